@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace coppice {
+
+/// One column of a tidy table; `unit` is SI and, when not empty, the name ends in it ("time_s").
+struct ColumnInfo {
+  enum class Type { number, integer, boolean, text };
+  std::string name;
+  Type type = Type::number;
+  std::string unit;
+  std::string doc;
+};
+
+/// A cell: empty (missing), a number, an integer or a text.
+using Cell = std::variant<std::monostate, double, std::int64_t, std::string>;
+
+/// Rows of observations: what a node writes and a report reads.
+struct Table {
+  std::vector<ColumnInfo> columns;
+  std::vector<std::vector<Cell>> rows;
+
+  std::size_t column(std::string_view name) const;  ///< throws std::out_of_range naming what there is
+  bool has(std::string_view name) const;
+};
+
+/// A cell as number; NaN when missing or text.
+double number(const Cell& cell);
+/// A cell as CSV text (unquoted): shortest text that reads back equal; empty when missing, NaN or infinite.
+std::string cell_text(const Cell& cell);
+
+/// RFC 4180 quoting, LF, UTF-8, header row; beside it <name>.schema.json (name, type, unit, doc of each column).
+/// Throws std::runtime_error with the file and the system's reason when it cannot be written.
+void write_table(const std::filesystem::path& file, const Table& table);
+
+/// Reads any CSV (LF or CRLF). Types come from the schema beside it, else from the cells. Throws ConfigError with file,
+/// line and column for what is not CSV.
+Table read_table(const std::filesystem::path& file);
+
+}  // namespace coppice

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "registry/error.h"
+
+namespace coppice {
+
+/// name="value" with its places. Values made by the program have no file.
+struct Attribute {
+  std::string name;
+  std::string value;
+  Place name_place;
+  Place value_place;  ///< of the first character inside the quotes
+};
+
+/// A located XML element; a plain value that expansion copies and edits.
+struct Element {
+  std::string name;
+  Place place;  ///< of the name, after '<'
+  std::vector<Attribute> attributes;
+  std::vector<Element> children;
+
+  const Attribute* find(std::string_view attribute) const;
+  /// The attribute's value, or `fallback`.
+  std::string_view get(std::string_view attribute, std::string_view fallback = {}) const;
+  /// Adds the attribute or replaces its value.
+  void set(std::string_view attribute, std::string value);
+  const Element* child(std::string_view child_name) const;
+};
+
+/// Reads a file. A file that cannot be read, is empty or is not text gives one located error.
+std::shared_ptr<const SourceFile> read_source(const std::string& path);
+
+/// Parses the root element of a text, refusing what XML forbids and tinyxml2 lets pass: a second root, text after
+/// the root, entities other than the five, DOCTYPE; also text between elements. Throws ConfigError.
+Element parse_xml(const std::shared_ptr<const SourceFile>& source);
+
+/// The element as XML text, attributes in order, two spaces of indent. parse_xml reads it back to the same tree.
+std::string to_xml(const Element& element, int indent = 0);
+
+}  // namespace coppice
