@@ -35,12 +35,12 @@ double number(const Cell& cell);
 /// A cell as CSV text (unquoted): shortest text that reads back equal; empty when missing, NaN or infinite.
 std::string cell_text(const Cell& cell);
 
-/// RFC 4180 quoting, LF, UTF-8, header row; beside it <name>.schema.json (name, type, unit, doc of each column).
-/// Throws std::runtime_error with the file and the system's reason when it cannot be written.
+/// RFC 4180 quoting, LF, UTF-8, header row; beside it <name>.schema.json (name, type, unit, doc of each
+/// column). Throws std::runtime_error with the file and the system's reason when it cannot be written.
 void write_table(const std::filesystem::path& file, const Table& table);
 
-/// Reads any CSV (LF or CRLF). Types come from the schema beside it, else from the cells. Throws ConfigError with file,
-/// line and column for what is not CSV.
+/// Reads any CSV (LF or CRLF). Types come from the schema beside it, else from the cells. Throws ConfigError
+/// with file, line and column for what is not CSV.
 Table read_table(const std::filesystem::path& file);
 
 }  // namespace coppice

@@ -11,8 +11,9 @@
 namespace coppice {
 
 /// Named typed arrays: what a learned object or a half-done training consists of besides its parameters.
-/// Names are paths ("trees/0/split"); nested objects add a prefix. Reading checks names, types and sizes and throws
-/// std::runtime_error with what is wrong, so that no damaged file can crash a reader that validates its own indices.
+/// Names are paths ("trees/0/split"); nested objects add a prefix. Reading checks names, types and sizes and
+/// throws std::runtime_error with what is wrong, so that no damaged file can crash a reader that validates
+/// its own indices.
 class Archive {
  public:
   using Array = std::variant<std::vector<double>, std::vector<float>, std::vector<std::int64_t>,

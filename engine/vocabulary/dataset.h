@@ -14,12 +14,12 @@ struct Dataset {
   Spaces spaces;
   std::vector<std::int64_t> episode;
   std::vector<std::int64_t> step;
-  Matrix states;                        ///< rows x state_size
+  Matrix states;  ///< rows x state_size
   std::vector<std::int32_t> action_id;
-  Matrix actions;                       ///< rows x widest_action; NaN where an action has fewer axes
+  Matrix actions;  ///< rows x widest_action; NaN where an action has fewer axes
   std::vector<double> reward;
-  Matrix next;                          ///< rows x state_size
-  std::vector<std::uint8_t> terminal;   ///< 1: `next` is terminal, nothing follows
+  Matrix next;                         ///< rows x state_size
+  std::vector<std::uint8_t> terminal;  ///< 1: `next` is terminal, nothing follows
 
   std::size_t rows() const { return reward.size(); }
   /// Throws std::logic_error when the columns differ in length.

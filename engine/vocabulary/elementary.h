@@ -2,9 +2,10 @@
 
 namespace coppice {
 
-/// Elementary functions whose results depend neither on the C library nor on the machine's instruction set, nor on
-/// whether they are computed one at a time or in packs: SLEEF's deterministic variants (error below 1 ulp).
-/// Models use these, never <cmath>'s; + - * / sqrt fabs are exact everywhere and may be used as they are.
+/// Elementary functions whose results depend neither on the C library nor on the machine's instruction set,
+/// nor on whether they are computed one at a time or in packs: SLEEF's deterministic variants (error below 1
+/// ulp). Models use these, never <cmath>'s; + - * / sqrt fabs are exact everywhere and may be used as they
+/// are.
 namespace elementary {
 double sin(double x);
 double cos(double x);

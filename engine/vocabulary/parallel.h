@@ -5,7 +5,8 @@
 
 namespace coppice {
 
-/// Runs indexed work on as many threads as the run's core budget has free. Results must depend on the index only.
+/// Runs indexed work on as many threads as the run's core budget has free. Results must depend on the index
+/// only.
 class Parallel {
  public:
   virtual ~Parallel() = default;
@@ -14,7 +15,8 @@ class Parallel {
   virtual void for_each(std::size_t n, const std::function<void(std::size_t)>& work) = 0;
   /// At most how many calls run at once.
   virtual std::size_t width() const = 0;
-  /// True when the run should end soon (Ctrl-C, time limit); long work checks it between units and returns early.
+  /// True when the run should end soon (Ctrl-C, time limit); long work checks it between units and returns
+  /// early.
   virtual bool stop_requested() const { return false; }
 };
 

@@ -12,15 +12,15 @@ namespace coppice {
 
 class Simulator;
 
-/// Chooses an action in a state. Made from parameters (and, when learned, from arrays), prepared once, then immutable
-/// and shared by any number of rollouts and threads.
+/// Chooses an action in a state. Made from parameters (and, when learned, from arrays), prepared once, then
+/// immutable and shared by any number of rollouts and threads.
 class Policy {
  public:
   static constexpr const char* kInterface = "policy";
   virtual ~Policy() = default;
 
-  /// Called once, before any action: tells the spaces, and the model for planners (null when only the spaces are
-  /// known). Throws std::invalid_argument when the policy does not fit them.
+  /// Called once, before any action: tells the spaces, and the model for planners (null when only the spaces
+  /// are known). Throws std::invalid_argument when the policy does not fit them.
   virtual void prepare(const Spaces& spaces, const Simulator* model) = 0;
 
   /// Numbers remembered within an episode; the caller holds them, one set for each rollout.
@@ -28,13 +28,13 @@ class Policy {
   /// Sets the memory as it is at the start of an episode.
   virtual void reset(std::span<double> memory) const;
 
-  /// The action for a state. `action` is overwritten; it lies in its box. `draws` are those of this scenario and step.
-  /// Does not allocate.
+  /// The action for a state. `action` is overwritten; it lies in its box. `draws` are those of this scenario
+  /// and step. Does not allocate.
   virtual void act(std::span<const double> state, std::span<double> memory, const Draws& draws,
                    Action& action) const = 0;
 
-  /// Arrays of a learned policy; configured policies have none. load throws std::runtime_error for arrays that do not
-  /// make a valid policy; it is called before prepare.
+  /// Arrays of a learned policy; configured policies have none. load throws std::runtime_error for arrays
+  /// that do not make a valid policy; it is called before prepare.
   virtual void save(Archive&) const {}
   virtual void load(Archive&) {}
 };

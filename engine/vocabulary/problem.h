@@ -33,10 +33,11 @@ class Simulator {
   /// The start state of the draws' scenario.
   virtual void start(const Draws& draws, std::span<double> state) const = 0;
   /// One step; `next` may not alias `state`.
-  virtual void step(std::span<const double> state, const Action& action, const Draws& draws, std::span<double> next,
-                    double& reward, bool& terminal) const = 0;
-  /// The one place that knows what a rollout and a discounted return are. Whole batches; no allocation and no virtual
-  /// call of the model per step. Result i depends on the simulation and the draws' family, not on the threads.
+  virtual void step(std::span<const double> state, const Action& action, const Draws& draws,
+                    std::span<double> next, double& reward, bool& terminal) const = 0;
+  /// The one place that knows what a rollout and a discounted return are. Whole batches; no allocation and no
+  /// virtual call of the model per step. Result i depends on the simulation and the draws' family, not on the
+  /// threads.
   virtual Returns simulate(const Simulation& simulation, const Draws& draws, Parallel& parallel) const = 0;
 };
 
@@ -50,16 +51,18 @@ class Problem {
   /// Used where a node gives none.
   virtual double discount() const = 0;
   virtual int horizon() const = 0;
-  /// Episodes from the problem's own starts: all that a live system offers. starts and first_actions are not allowed.
+  /// Episodes from the problem's own starts: all that a live system offers. starts and first_actions are not
+  /// allowed.
   virtual Returns episodes(const Simulation& simulation, const Draws& draws, Parallel& parallel) const = 0;
   /// Null for problems that only offer episodes (a live robot, a remote simulator).
   virtual const Simulator* simulator() const { return nullptr; }
 };
 
-/// A plain struct that is a problem. Besides these it may have `double discount` and `int horizon` members, or
-/// functions of these names (defaults: 1 and 100).
+/// A plain struct that is a problem. Besides these it may have `double discount` and `int horizon` members,
+/// or functions of these names (defaults: 1 and 100).
 template <class M>
-concept Model = requires(const M& model, const typename M::State& state, ActionRef action, const Draws& draws) {
+concept Model = requires(const M& model, const typename M::State& state, ActionRef action,
+                         const Draws& draws) {
   { model.states() } -> std::convertible_to<Space>;
   { model.actions() } -> std::convertible_to<std::vector<ActionBox>>;
   { model.start(draws) } -> std::convertible_to<typename M::State>;

@@ -28,8 +28,8 @@ class Recorder {
   virtual void episode(std::size_t rollout, std::uint64_t scenario, const Episode& episode) = 0;
 };
 
-/// What to simulate. Rollout i runs on scenario scenarios[i], or first_scenario + i; it starts in row i of `starts`, or
-/// where the problem starts in that scenario.
+/// What to simulate. Rollout i runs on scenario scenarios[i], or first_scenario + i; it starts in row i of
+/// `starts`, or where the problem starts in that scenario.
 struct Simulation {
   const Policy* policy = nullptr;
   std::size_t rollouts = 0;

@@ -11,8 +11,8 @@
 
 namespace coppice {
 
-/// A small vector of doubles with inline storage; N is its capacity, its size may be less and is known at run time
-/// (a state whose length depends on the configuration). Never allocates.
+/// A small vector of doubles with inline storage; N is its capacity, its size may be less and is known at run
+/// time (a state whose length depends on the configuration). Never allocates.
 template <std::size_t N>
 class Vec {
  public:
@@ -92,7 +92,8 @@ struct Action {
   friend bool operator==(const Action&, const Action&) = default;
 };
 
-/// The action with each parameter moved into its box (circular axes are wrapped); a NaN becomes the box's centre.
+/// The action with each parameter moved into its box (circular axes are wrapped); a NaN becomes the box's
+/// centre.
 Action clamp(Action action, const std::vector<ActionBox>& boxes);
 
 }  // namespace coppice

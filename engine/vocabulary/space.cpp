@@ -1,0 +1,46 @@
+#include "engine/vocabulary/space.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace coppice {
+namespace {
+
+double centre(const Axis& axis) {
+  if (std::isfinite(axis.low) && std::isfinite(axis.high)) return axis.low / 2 + axis.high / 2;
+  return std::clamp(0.0, axis.low, axis.high);
+}
+
+double clamp(double value, const Axis& axis) {
+  if (std::isnan(value)) return centre(axis);
+  if (value >= axis.low && value <= axis.high) return value;
+  const double width = axis.high - axis.low;
+  if (!axis.circular || !std::isfinite(value) || !(width > 0)) return std::clamp(value, axis.low, axis.high);
+  return std::clamp(value - width * std::floor((value - axis.low) / width), axis.low, axis.high);
+}
+
+}  // namespace
+
+std::size_t Spaces::widest_action() const {
+  std::size_t widest = 0;
+  for (const ActionBox& box : actions) widest = std::max(widest, box.axes.size());
+  return widest;
+}
+
+Action clamp(Action action, const std::vector<ActionBox>& boxes) {
+  if (action.id < 0 || static_cast<std::size_t>(action.id) >= boxes.size()) {
+    throw std::invalid_argument(
+        fmt::format("action {} does not exist; there are {}", action.id, boxes.size()));
+  }
+  const Space& axes = boxes[static_cast<std::size_t>(action.id)].axes;
+  if (action.values.size() != axes.size()) {
+    throw std::invalid_argument(fmt::format("action {} has {} parameters instead of {}", action.id,
+                                            action.values.size(), axes.size()));
+  }
+  for (std::size_t i = 0; i < axes.size(); ++i) action.values[i] = clamp(action.values[i], axes[i]);
+  return action;
+}
+
+}  // namespace coppice
