@@ -16,8 +16,8 @@ namespace coppice {
 /// The problem of a `problem` node, made from its element.
 std::shared_ptr<const Problem> load_problem(const InputNode& node);
 
-/// The policy of a node that makes one (policy, train, select), prepared for the problem. While checking, a learned
-/// policy is not there yet: null.
+/// The policy of a node that makes one (policy, train, select), prepared for the problem. While checking, a
+/// learned policy is not there yet: null.
 MadePolicy load_policy(const InputNode& node, const Problem& problem);
 
 /// The dataset of a node that makes one.

@@ -21,7 +21,7 @@ struct NodeOptions {
   std::vector<std::string> over;  ///< ids of sweeps
   std::string at;                 ///< sweep point, in flat files ("variant=HA, gamma=0.9")
   std::optional<int> replicates;
-  std::string seed_label;    ///< draws' label; empty: the node's kind
+  std::string seed_label;  ///< draws' label; empty: the node's kind
   std::string doc;
   double time_limit = 0;     ///< s of wall time, 0: none
   double memory_limit = 0;   ///< byte, 0: none
@@ -38,27 +38,33 @@ struct InputNode {
   std::string kind;
   Point point;
   std::optional<int> replicate;
-  Element element;                ///< resolved
-  std::filesystem::path folder;   ///< its files; empty for definitions (problem, policy) and while checking
+  Element element;               ///< resolved
+  std::filesystem::path folder;  ///< its files; empty for definitions (problem, policy) and while checking
   std::string key;
+  std::vector<PointValue> labels;    ///< columns that name it in tables: sweep columns, "problem", "policy"
+  std::vector<std::string> streams;  ///< streams of draws it depends on ("collect 0"), its own first
 };
 
 /// What a node sees while it is checked and while it runs.
 class NodeContext {
  public:
   virtual ~NodeContext() = default;
-  /// The nodes that a reference parameter leads to, in the order of the config, then of points and replicates.
+  /// The nodes that a reference parameter leads to, in the order of the config, then of points and
+  /// replicates.
   virtual const std::vector<InputNode>& inputs(std::string_view parameter) const = 0;
   virtual const Point& point() const = 0;
   virtual std::optional<int> replicate() const = 0;
   virtual Draws draws() const = 0;  ///< of (root seed, label, replicate)
   virtual const std::string& key() const = 0;
+  virtual const std::string& stream() const = 0;  ///< name of draws(), to compare with InputNode::streams
 
   // Only while running:
   virtual const std::filesystem::path& folder() const = 0;  ///< write outputs here
   virtual Parallel& parallel() = 0;
   /// Adds to the work counters of timing.csv ("steps", "evaluations").
   virtual void count(std::string_view what, std::int64_t amount) = 0;
+  /// Sets a column of timing.csv ("action_s").
+  virtual void measure(std::string_view what, double value) = 0;
   virtual void progress(std::int64_t done, std::int64_t total) = 0;
   /// The last checkpoint of this very node (same key), if an earlier run left one.
   virtual std::optional<Archive> checkpoint() = 0;
@@ -71,8 +77,8 @@ class Interrupted : public std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// A kind of node of the experiment graph. Immutable once read; run writes files into the context's folder, and
-/// nothing else decides them than parameters, inputs and draws.
+/// A kind of node of the experiment graph. Immutable once read; run writes files into the context's folder,
+/// and nothing else decides them than parameters, inputs and draws.
 class Node : public NodeOptions {
  public:
   static constexpr const char* kInterface = "node";
@@ -82,10 +88,18 @@ class Node : public NodeOptions {
   virtual std::vector<std::string> makes() const = 0;
   /// True when there is nothing to run: the element is all (problem, and policy without a problem).
   virtual bool definition() const { return false; }
-  /// True when a reference parameter takes several nodes although the node has no sweep or replicate of its own
-  /// (table, figure, compare, select; train's samples).
+  /// True when a reference parameter takes several nodes although the node has no sweep or replicate of its
+  /// own (table, figure, compare, select; train's samples).
   virtual bool gathers(std::string_view) const { return false; }
-  /// Checks that need the inputs' elements. Throws std::invalid_argument or ConfigError; called when planning.
+  /// True when its files show the labels and replicates of its inputs, which then enter its key (table).
+  virtual bool shows_labels() const { return false; }
+  /// Tables among its files to which the engine adds the node's labels and replicate as first columns. The
+  /// stored result is without, so that equal work under other names is done once.
+  virtual std::vector<std::string> labelled_tables() const { return {}; }
+  /// Folder of the run in which its tables appear under the node's id ("tables"); empty: none.
+  virtual std::string published_in() const { return {}; }
+  /// Checks that need the inputs' elements. Throws std::invalid_argument or ConfigError; called when
+  /// planning.
   virtual void check(const NodeContext&) const {}
   virtual void run(NodeContext& context) const = 0;
 };
@@ -94,19 +108,23 @@ template <class T>
 Parameters<T> node_parameters() {
   return Parameters<T>()
       .require("id", static_cast<std::string T::*>(&T::id), "", "Name of the node, unique in the experiment.")
-      .add("over", static_cast<std::vector<std::string> T::*>(&T::over), "", "Sweeps that the node runs over.")
-      .add("at", static_cast<std::string T::*>(&T::at), "", "Sweep point of the node; only in expanded files.")
-      .automatic("replicates", static_cast<std::optional<int> T::*>(&T::replicates), "",
-                 "Independent repetitions; auto: those of its inputs where the node has them to itself, else none.",
-                 at_least(1))
+      .add("over", static_cast<std::vector<std::string> T::*>(&T::over), "",
+           "Sweeps that the node runs over.")
+      .add("at", static_cast<std::string T::*>(&T::at), "",
+           "Sweep point of the node; only in expanded files.")
+      .automatic(
+          "replicates", static_cast<std::optional<int> T::*>(&T::replicates), "",
+          "Independent repetitions; auto: those of its inputs where the node has them to itself, else none.",
+          at_least(1))
       .add("seed_label", static_cast<std::string T::*>(&T::seed_label), "",
            "Label of the node's draws; empty: its kind. Nodes with equal labels meet equal randomness.")
       .add("doc", static_cast<std::string T::*>(&T::doc), "", "What the node is for; shown in the report.")
-      .add("time_limit", static_cast<double T::*>(&T::time_limit), "s", "Wall time allowed; 0: no limit.", at_least(0))
+      .add("time_limit", static_cast<double T::*>(&T::time_limit), "s", "Wall time allowed; 0: no limit.",
+           at_least(0))
       .add("memory_limit", static_cast<double T::*>(&T::memory_limit), "byte", "Memory allowed; 0: no limit.",
            at_least(0))
-      .add("threads", static_cast<std::int64_t T::*>(&T::threads), "", "Threads at most; 0: what the run has free.",
-           at_least(0));
+      .add("threads", static_cast<std::int64_t T::*>(&T::threads), "",
+           "Threads at most; 0: what the run has free.", at_least(0));
 }
 
 }  // namespace coppice

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/config/experiment.h"
+#include "engine/graph/node.h"
+
+namespace coppice {
+
+/// The planned nodes that one reference parameter leads to, as indices into Plan::nodes.
+struct PlannedInput {
+  std::string parameter;
+  std::string artifact;
+  std::vector<std::size_t> nodes;
+};
+
+/// One node to compute, or a definition: a node element at one sweep point, for one item of its fan-out and
+/// one replicate.
+struct PlannedNode {
+  std::string id;
+  std::string kind;
+  Point point;
+  std::string item;  ///< id of the node it fans out to ("rfpi" of an evaluation's policies); else empty
+  std::optional<int> replicate;  ///< from 0
+  std::string name;              ///< unique, for people: "scores variant=HA rfpi r003"
+  std::string folder;            ///< unique, below the run folder: "nodes/scores/variant=HA/rfpi/r003"
+  std::string key;               ///< 32 hexadecimal digits; see key.h
+  std::string component;         ///< kind and main components, for predictions: "train fpf double_integrator"
+  bool definition = false;
+  Place place;
+
+  std::shared_ptr<const Node> node;
+  std::shared_ptr<const Element> resolved;  ///< every parameter with its value
+  std::vector<PlannedInput> inputs;         ///< in the order of the parameters
+  std::vector<PointValue> labels;    ///< columns that name it in tables: sweep columns, problem, policy
+  std::vector<std::string> streams;  ///< streams of draws it depends on, its own first (unless a definition)
+  std::string parameters_text;       ///< part of the key text that comes from `resolved`
+};
+
+/// What a config asks for, before looking at any result. Everything that plan, why and run say comes from
+/// here.
+struct Plan {
+  ExperimentConfig experiment;     ///< its elements resolved
+  std::vector<PlannedNode> nodes;  ///< every node after its inputs, else in document order
+  std::vector<InputFile> files;    ///< read by the config and named in parameters
+
+  /// What the key of a node is the hash of: lines "name = value".
+  std::string key_text(std::size_t node) const;
+  /// The root seed's draws of a node's label and replicate.
+  Draws draws(std::size_t node) const;
+  /// Indices of the nodes with this id, or with this name; empty when there is none.
+  std::vector<std::size_t> find(std::string_view id_or_name) const;
+  std::vector<std::string> ids() const;  ///< in document order
+};
+
+/// Makes the nodes, resolves references, joins sweeps and replicates, checks every node, and computes the
+/// keys. Throws ConfigError with every mistake.
+Plan make_plan(ExperimentConfig experiment);
+
+/// The same for several configs, with the mistakes of all; two experiments of one name are a mistake too.
+std::vector<Plan> make_plans(std::vector<ExperimentConfig> experiments);
+
+}  // namespace coppice

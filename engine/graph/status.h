@@ -1,0 +1,72 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/graph/plan.h"
+
+namespace coppice {
+
+/// Why a node runs, or does not.
+enum class Reason { definition, up_to_date, not_selected, new_node, changed, missing_output, forced };
+
+/// A line of the key text that differs from the last run's.
+struct Change {
+  std::string what;  ///< "solver.trees", or the id of an input node
+  std::string before;
+  std::string now;
+};
+
+/// What a run would do with a node.
+struct NodeStatus {
+  Reason reason = Reason::new_node;
+  bool runs = false;            ///< false when its result is there, if only in the store, from another run
+  std::vector<Change> changes;  ///< of `changed`
+  std::optional<double> predicted_s;  ///< from recorded durations; none without evidence
+};
+
+/// The reason in words: "changed: solver.trees: 25 -> 50", "up to date", ...
+std::string to_text(const NodeStatus& status);
+
+/// Which nodes the user asked for.
+struct Selection {
+  std::vector<std::string> only;   ///< ids: these and what they need; empty: all
+  std::vector<std::string> force;  ///< ids: run again, with what depends on them
+};
+
+/// The state of every node of the plan in the output folder `out`. Reads only. Throws ConfigError for an id
+/// that does not exist, with the nearest.
+std::vector<NodeStatus> inspect(const Plan& plan, const Selection& selection,
+                                const std::filesystem::path& out);
+
+/// Time that the running nodes would take on so many cores; none unless every one has a prediction.
+std::optional<double> predicted_total(const std::vector<NodeStatus>& nodes, int threads);
+
+/// One node's key in full, and what changed since the last run.
+struct Explanation {
+  std::string name;
+  std::string key;
+  std::string key_text;  ///< lines "name = value"
+  NodeStatus status;
+};
+
+/// Explains the nodes with this id or name. Throws ConfigError when there is none, with the nearest.
+std::vector<Explanation> explain(const Plan& plan, std::string_view id_or_name,
+                                 const std::filesystem::path& out);
+
+/// A run folder as `runner status` shows it, also while the run goes on.
+struct RunStatus {
+  std::string experiment;
+  bool running = false;  ///< a process holds the folder
+  std::size_t nodes = 0;
+  std::size_t finished = 0;
+  std::size_t failed = 0;
+  std::vector<std::string> messages;  ///< of failed nodes
+};
+
+/// Throws ConfigError when the folder is not one of a run.
+RunStatus read_status(const std::filesystem::path& run_folder);
+
+}  // namespace coppice
