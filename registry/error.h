@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -29,7 +31,7 @@ struct TraceFrame {
 struct Place {
   std::shared_ptr<const SourceFile> file;
   int line = 0;
-  int column = 0;
+  int column = 0;  ///< in characters, whatever bytes they take; a tab is one
   int length = 1;  ///< characters to underline
   std::shared_ptr<const TraceFrame> trace;
 };
@@ -43,9 +45,11 @@ struct Diagnostic {
 };
 
 /// The diagnostic as the user reads it: file:line:column, quoted line, caret, hint, include and macro trace.
+/// Ends with a line end.
 std::string to_text(const Diagnostic& diagnostic);
 
-/// The user's mistakes, all of them. Only `main` catches it; exit status 2.
+/// The user's mistakes, all of them, sorted by file and place, each once. Only `main` catches it; exit
+/// status 2. what() is their texts.
 class ConfigError : public std::runtime_error {
  public:
   explicit ConfigError(std::vector<Diagnostic> diagnostics);
@@ -53,22 +57,30 @@ class ConfigError : public std::runtime_error {
   const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
 
  private:
+  struct Ordered {};
+  ConfigError(std::vector<Diagnostic> diagnostics, Ordered);
+
   std::vector<Diagnostic> diagnostics_;
 };
 
-/// Collects mistakes, so that one pass reports all of them. An identical mistake at the same place counts once.
+/// Collects mistakes, so that one pass reports all of them. An identical mistake at the same place counts
+/// once.
 class Diagnostics {
  public:
-  void error(const Place& place, std::string message, std::string hint = {}, std::vector<std::string> notes = {});
+  void error(const Place& place, std::string message, std::string hint = {},
+             std::vector<std::string> notes = {});
   void add(const ConfigError& error);
   bool empty() const { return all_.empty(); }
-  std::size_t size() const { return all_.size(); }
+  /// How often a mistake was reported, repetitions included: it grows with every call of error().
+  std::size_t size() const { return reported_; }
   const std::vector<Diagnostic>& all() const { return all_; }
   /// Throws ConfigError with everything collected, if there is anything.
   void throw_if_any() const;
 
  private:
   std::vector<Diagnostic> all_;
+  std::set<std::string> seen_;
+  std::size_t reported_ = 0;
 };
 
 }  // namespace coppice

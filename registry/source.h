@@ -35,11 +35,12 @@ struct Element {
 /// Reads a file. A file that cannot be read, is empty or is not text gives one located error.
 std::shared_ptr<const SourceFile> read_source(const std::string& path);
 
-/// Parses the root element of a text, refusing what XML forbids and tinyxml2 lets pass: a second root, text after
-/// the root, entities other than the five, DOCTYPE; also text between elements. Throws ConfigError.
+/// Parses the root element of a text, refusing what XML forbids and tinyxml2 lets pass: a second root, text
+/// after the root, entities other than the five, DOCTYPE; also text between elements. Throws ConfigError.
 Element parse_xml(const std::shared_ptr<const SourceFile>& source);
 
-/// The element as XML text, attributes in order, two spaces of indent. parse_xml reads it back to the same tree.
+/// The element as XML text, attributes in order, two spaces of indent. parse_xml reads it back to the same
+/// tree.
 std::string to_xml(const Element& element, int indent = 0);
 
 }  // namespace coppice

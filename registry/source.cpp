@@ -1,0 +1,223 @@
+#include "registry/source.h"
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "registry/suggest.h"
+#include "registry/text.h"
+#include "registry/xml_scanner.h"
+
+namespace coppice {
+namespace {
+
+constexpr std::size_t kLargestFile = std::size_t{64} << 20u;
+
+[[noreturn]] void fail(Place place, std::string message, std::string hint = {}) {
+  throw ConfigError({Diagnostic{std::move(place), std::move(message), std::move(hint), {}}});
+}
+
+/// The nearest name among the files beside a missing one.
+std::string similar_file(const std::filesystem::path& path) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  const std::string name = nearest(path.filename().string(), names);
+  if (name.empty()) return "";
+  return fmt::format("did you mean '{}'?", (path.parent_path() / name).string());
+}
+
+/// The bytes of a file, at most one more than a config may have.
+std::string read_bytes(const std::string& path, const Place& place) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) fail(place, "this is a folder, not a file");
+  errno = 0;
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file) {
+    const int reason = errno;
+    fail(place, "cannot read the file: " + std::generic_category().message(reason),
+         reason == ENOENT ? similar_file(path) : "");
+  }
+  std::string bytes;
+  std::vector<char> buffer(std::size_t{1} << 16u);
+  while (bytes.size() <= kLargestFile) {
+    const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), file.get());
+    if (count == 0) break;
+    bytes.append(buffer.data(), count);
+  }
+  if (std::ferror(file.get()) != 0) {
+    fail(place, "cannot read the file: " + std::generic_category().message(errno));
+  }
+  return bytes;
+}
+
+/// Line ends as LF, no byte order mark.
+std::string normalized(std::string_view bytes) {
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+  std::string text;
+  text.reserve(bytes.size());
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    if (bytes[i] != '\r') {
+      text += bytes[i];
+    } else if (i + 1 == bytes.size() || bytes[i + 1] != '\n') {
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+/// Gives the parser's elements the places that the scanner found; both go through the text in the same order.
+class Builder {
+ public:
+  explicit Builder(const std::vector<ScannedTag>& tags) : tags_(tags) {}
+
+  Element build(const tinyxml2::XMLElement& parsed) {
+    const ScannedTag& tag = tags_.at(next_++);
+    Element element;
+    element.name = parsed.Name();
+    element.place = tag.name;
+    std::size_t i = 0;
+    for (const auto* attribute = parsed.FirstAttribute(); attribute != nullptr;
+         attribute = attribute->Next(), ++i) {
+      const ScannedAttribute& place = tag.attributes.at(i);
+      element.attributes.push_back({attribute->Name(), attribute->Value(), place.name, place.value});
+    }
+    for (const auto* child = parsed.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
+      element.children.push_back(build(*child));
+    }
+    return element;
+  }
+
+ private:
+  const std::vector<ScannedTag>& tags_;
+  std::size_t next_ = 0;
+};
+
+void append_escaped(std::string& text, std::string_view value) {
+  for (const char c : value) {
+    switch (c) {
+      case '&':
+        text += "&amp;";
+        break;
+      case '<':
+        text += "&lt;";
+        break;
+      case '>':
+        text += "&gt;";
+        break;
+      case '"':
+        text += "&quot;";
+        break;
+      case '\t':
+        text += "&#9;";
+        break;
+      case '\n':
+        text += "&#10;";
+        break;
+      case '\r':
+        text += "&#13;";
+        break;
+      default:
+        text += c;
+    }
+  }
+}
+
+void append_xml(std::string& text, const Element& element, int indent) {
+  text.append(static_cast<std::size_t>(indent), ' ');
+  text += "<" + element.name;
+  for (const Attribute& attribute : element.attributes) {
+    text += " " + attribute.name + "=\"";
+    append_escaped(text, attribute.value);
+    text += '"';
+  }
+  if (element.children.empty()) {
+    text += "/>\n";
+    return;
+  }
+  text += ">\n";
+  for (const Element& child : element.children) append_xml(text, child, indent + 2);
+  text.append(static_cast<std::size_t>(indent), ' ');
+  text += "</" + element.name + ">\n";
+}
+
+}  // namespace
+
+const Attribute* Element::find(std::string_view attribute) const {
+  const auto found = std::find_if(attributes.begin(), attributes.end(),
+                                  [attribute](const Attribute& a) { return a.name == attribute; });
+  return found == attributes.end() ? nullptr : &*found;
+}
+
+std::string_view Element::get(std::string_view attribute, std::string_view fallback) const {
+  const Attribute* found = find(attribute);
+  return found == nullptr ? fallback : std::string_view(found->value);
+}
+
+void Element::set(std::string_view attribute, std::string value) {
+  const auto found = std::find_if(attributes.begin(), attributes.end(),
+                                  [attribute](const Attribute& a) { return a.name == attribute; });
+  if (found != attributes.end()) {
+    found->value = std::move(value);
+  } else {
+    attributes.push_back({std::string(attribute), std::move(value), {}, {}});
+  }
+}
+
+const Element* Element::child(std::string_view child_name) const {
+  const auto found = std::find_if(children.begin(), children.end(),
+                                  [child_name](const Element& c) { return c.name == child_name; });
+  return found == children.end() ? nullptr : &*found;
+}
+
+std::shared_ptr<const SourceFile> read_source(const std::string& path) {
+  auto source = std::make_shared<SourceFile>();
+  source->path = path;
+  const Place place{source, 0, 0, 1, nullptr};
+  const std::string bytes = read_bytes(path, place);
+  if (bytes.size() > kLargestFile) {
+    fail(place, fmt::format("the file is larger than {} MiB, the most that is read", kLargestFile >> 20u));
+  }
+  if (trim(bytes).empty()) fail(place, "the file is empty");
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
+    fail(place, "the file is UTF-16 text", "save it as UTF-8");
+  }
+  if (bytes.find('\0') != std::string::npos) fail(place, "the file is binary, not text");
+  source->text = normalized(bytes);
+  return source;
+}
+
+Element parse_xml(const std::shared_ptr<const SourceFile>& source) {
+  const ScannedXml scanned = scan_xml(source);
+  tinyxml2::XMLDocument document;
+  if (document.Parse(scanned.text.data(), scanned.text.size()) != tinyxml2::XML_SUCCESS ||
+      document.RootElement() == nullptr) {
+    fail({source, document.ErrorLineNum(), 0, 1, nullptr}, "this is not well-formed XML");
+  }
+  Element root = Builder(scanned.tags).build(*document.RootElement());
+  // What editors need to find the schema is nothing for us.
+  std::erase_if(root.attributes, [](const Attribute& attribute) {
+    return attribute.name == "xmlns:xsi" || attribute.name == "xsi:noNamespaceSchemaLocation";
+  });
+  return root;
+}
+
+std::string to_xml(const Element& element, int indent) {
+  std::string text;
+  append_xml(text, element, indent);
+  return text;
+}
+
+}  // namespace coppice
