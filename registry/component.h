@@ -45,7 +45,8 @@ class Catalogue {
   std::vector<std::string> problems_;
 };
 
-/// Turns a plain struct into an interface; specialised beside interfaces that accept plain structs (Problem).
+/// Turns a plain struct into an interface; specialised beside interfaces that accept plain structs (Problem). Has
+/// `static std::shared_ptr<Interface> make(T object, std::string component_name)`.
 template <class Interface>
 struct Adapter;
 
@@ -82,7 +83,7 @@ class Component {
     if constexpr (std::derived_from<T, Interface>) {
       return std::static_pointer_cast<Interface>(std::make_shared<T>(std::move(object)));
     } else {
-      return std::shared_ptr<Interface>(Adapter<Interface>::make(std::move(object)));
+      return std::shared_ptr<Interface>(Adapter<Interface>::make(std::move(object), element.name));
     }
   }
 };

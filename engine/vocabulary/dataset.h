@@ -21,12 +21,18 @@ struct Dataset {
   Matrix next;                         ///< rows x state_size
   std::vector<std::uint8_t> terminal;  ///< 1: `next` is terminal, nothing follows
 
+  Dataset() = default;
+  Dataset(Spaces axes, std::size_t rows);  ///< rows of zeros
+
   std::size_t rows() const { return reward.size(); }
+  Action action(std::size_t row) const;
+  void set_action(std::size_t row, const Action& action);
   /// Throws std::logic_error when the columns differ in length.
   void check() const;
 };
 
-/// Rows of `parts` one after the other, episodes renumbered; all parts have equal spaces.
+/// Rows of `parts` one after the other, episodes renumbered so that those of different parts differ. Throws
+/// std::invalid_argument when the parts have different spaces.
 Dataset join(const std::vector<Dataset>& parts);
 
 /// Columns: episode, step, s_<axis>, action_id, a_<axis>, reward, n_<axis>, terminal (docs: "Datasets").

@@ -32,7 +32,7 @@ class Simulator {
   virtual ~Simulator() = default;
   /// The start state of the draws' scenario.
   virtual void start(const Draws& draws, std::span<double> state) const = 0;
-  /// One step; `next` may not alias `state`.
+  /// One step; `next` may not alias `state`. `draws` are those of a scenario and a step.
   virtual void step(std::span<const double> state, const Action& action, const Draws& draws,
                     std::span<double> next, double& reward, bool& terminal) const = 0;
   /// The one place that knows what a rollout and a discounted return are. Whole batches; no allocation and no
@@ -76,8 +76,8 @@ class ModelProblem;
 template <>
 struct Adapter<Problem> {
   template <Model M>
-  static std::shared_ptr<Problem> make(M model) {
-    return std::make_shared<ModelProblem<M>>(std::move(model));
+  static std::shared_ptr<Problem> make(M model, std::string name) {
+    return std::make_shared<ModelProblem<M>>(std::move(model), std::move(name));
   }
 };
 

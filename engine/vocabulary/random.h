@@ -41,8 +41,9 @@ class Draws {
   /// A sequence of draws, for algorithms that need an unknown number of them.
   Stream stream(Purpose purpose, std::uint64_t index = 0) const;
 
-  /// Identifies the family.
-  std::uint64_t key() const { return key_; }
+  std::uint64_t key() const { return key_; }  ///< identifies the family
+  std::uint64_t scenario() const { return scenario_; }
+  std::uint32_t step() const { return step_; }
 
  private:
   explicit Draws(std::uint64_t key) : key_(key) {}

@@ -19,6 +19,9 @@ struct Episode {
   std::vector<Action> actions;
   std::vector<double> rewards;
   bool terminal = false;  ///< ended in a terminal state (else cut at the horizon)
+
+  void begin(std::span<const double> state);  ///< empties it and sets the start state
+  void add(const Action& action, double reward, std::span<const double> next);
 };
 
 /// Receives episodes. Called from several threads, in any order, once for each rollout.
@@ -41,6 +44,12 @@ struct Simulation {
   std::span<const Action> first_actions;     ///< empty, or the action of step 0 of each rollout
   const Function* terminal_value = nullptr;  ///< value of the state where the horizon cut; null: 0
   Recorder* recorder = nullptr;
+
+  std::uint64_t scenario(std::size_t rollout) const {
+    return scenarios.empty() ? first_scenario + rollout : scenarios[rollout];
+  }
+  /// Throws std::invalid_argument naming what does not fit (sizes, discount, horizon, ...).
+  void check(const Spaces& spaces) const;
 };
 
 /// What came out, by rollout.
@@ -49,6 +58,10 @@ struct Returns {
   std::vector<double> discounted;  ///< sum of discount^t reward_t, plus discount^T terminal value when cut
   std::vector<std::int32_t> steps;
   std::vector<std::uint8_t> terminal;
+
+  Returns() = default;
+  explicit Returns(std::size_t rollouts)
+      : total(rollouts), discounted(rollouts), steps(rollouts), terminal(rollouts) {}
 };
 
 /// Keeps every episode and makes a dataset of them, in order of rollouts whatever the order of calls.

@@ -21,6 +21,24 @@ double clamp(double value, const Axis& axis) {
   return std::clamp(value - width * std::floor((value - axis.low) / width), axis.low, axis.high);
 }
 
+void check_axes(const std::string& whose, const Space& axes, std::size_t limit) {
+  if (axes.size() > limit) {
+    throw std::invalid_argument(fmt::format("{} has {} axes; {} is the most", whose, axes.size(), limit));
+  }
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const Axis& axis = axes[i];
+    if (axis.name.empty()) throw std::invalid_argument(fmt::format("axis {} of {} has no name", i, whose));
+    const auto same = [&axis](const Axis& other) { return other.name == axis.name; };
+    if (std::any_of(axes.begin(), axes.begin() + static_cast<std::ptrdiff_t>(i), same)) {
+      throw std::invalid_argument(fmt::format("{} has two axes called '{}'", whose, axis.name));
+    }
+    if (!(axis.low <= axis.high)) {
+      throw std::invalid_argument(
+          fmt::format("axis '{}' of {} reaches from {} to {}", axis.name, whose, axis.low, axis.high));
+    }
+  }
+}
+
 }  // namespace
 
 std::size_t Spaces::widest_action() const {
@@ -29,7 +47,14 @@ std::size_t Spaces::widest_action() const {
   return widest;
 }
 
-Action clamp(Action action, const std::vector<ActionBox>& boxes) {
+void Spaces::check() const {
+  check_axes("the state", states, kMaxStateSize);
+  if (actions.empty()) throw std::invalid_argument("there is no action");
+  for (const ActionBox& box : actions)
+    check_axes(fmt::format("action '{}'", box.name), box.axes, kMaxActionSize);
+}
+
+void clamp_in_place(Action& action, const std::vector<ActionBox>& boxes) {
   if (action.id < 0 || static_cast<std::size_t>(action.id) >= boxes.size()) {
     throw std::invalid_argument(
         fmt::format("action {} does not exist; there are {}", action.id, boxes.size()));
@@ -40,6 +65,10 @@ Action clamp(Action action, const std::vector<ActionBox>& boxes) {
                                             action.values.size(), axes.size()));
   }
   for (std::size_t i = 0; i < axes.size(); ++i) action.values[i] = clamp(action.values[i], axes[i]);
+}
+
+Action clamp(Action action, const std::vector<ActionBox>& boxes) {
+  clamp_in_place(action, boxes);
   return action;
 }
 

@@ -41,8 +41,6 @@ class Vec {
   constexpr double* end() { return values_.data() + size_; }
   constexpr const double* begin() const { return values_.data(); }
   constexpr const double* end() const { return values_.data() + size_; }
-  constexpr operator std::span<const double>() const { return {values_.data(), size_}; }
-  constexpr operator std::span<double>() { return {values_.data(), size_}; }
   friend constexpr bool operator==(const Vec& a, const Vec& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end());
   }
@@ -79,6 +77,9 @@ struct Spaces {
 
   std::size_t state_size() const { return states.size(); }
   std::size_t widest_action() const;  ///< axes of the action with most of them
+  /// Throws std::invalid_argument naming what is wrong: no action, too many axes, a name that is empty or
+  /// stands twice, limits that are NaN or in the wrong order.
+  void check() const;
   friend bool operator==(const Spaces&, const Spaces&) = default;
 };
 
@@ -92,8 +93,9 @@ struct Action {
   friend bool operator==(const Action&, const Action&) = default;
 };
 
-/// The action with each parameter moved into its box (circular axes are wrapped); a NaN becomes the box's
-/// centre.
+/// Moves each parameter into its box (circular axes are wrapped); a NaN becomes the box's centre. Throws
+/// std::invalid_argument when there is no such action, or when it has another number of parameters.
+void clamp_in_place(Action& action, const std::vector<ActionBox>& boxes);
 Action clamp(Action action, const std::vector<ActionBox>& boxes);
 
 }  // namespace coppice
