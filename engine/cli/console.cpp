@@ -1,0 +1,125 @@
+#include "engine/cli/console.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+
+namespace coppice::cli {
+namespace {
+
+bool terminal_shows_colors() {
+  const char* no_color = std::getenv("NO_COLOR");
+  const char* terminal = std::getenv("TERM");
+  if (no_color != nullptr && *no_color != '\0') return false;
+  return isatty(STDERR_FILENO) != 0 && terminal != nullptr && std::strcmp(terminal, "dumb") != 0;
+}
+
+[[noreturn]] void output_failed() {
+  if (errno == EPIPE) throw OutputClosed{};
+  throw std::runtime_error(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+}
+
+/// A diagnostic's text, its parts coloured as compilers do.
+std::string colored(const Console& console, const std::string& text) {
+  const std::size_t end = text.find('\n');
+  std::string first = text.substr(0, end);
+  const std::size_t word = first.find("error: ");
+  if (word == std::string::npos) return text;
+  first = console.styled(Console::Style::bold, first.substr(0, word)) +
+          console.styled(Console::Style::red, "error: ") +
+          console.styled(Console::Style::bold, first.substr(word + 7));
+  if (end == std::string::npos) return first;
+  std::string rest = text.substr(end);
+  const std::size_t caret = rest.find("| ");
+  const std::size_t mark = caret == std::string::npos ? caret : rest.find('^', rest.find('\n', caret));
+  if (mark != std::string::npos) {
+    const std::size_t stop = std::min(rest.find('\n', mark), rest.size());
+    rest = rest.substr(0, mark) + console.styled(Console::Style::green, rest.substr(mark, stop - mark)) +
+           rest.substr(stop);
+  }
+  return first + rest;
+}
+
+}  // namespace
+
+void Console::set_color(std::string_view color) {
+  color_ = color == "always" || (color == "auto" && terminal_shows_colors());
+}
+
+void Console::out(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) output_failed();
+}
+
+void Console::flush() {
+  if (std::fflush(stdout) != 0) output_failed();
+}
+
+void Console::say(std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void Console::say(const ConfigError& error) {
+  std::string all;
+  for (const Diagnostic& diagnostic : error.diagnostics()) {
+    all += colored(*this, to_text(diagnostic));
+    if (!all.ends_with('\n')) all += '\n';
+  }
+  const std::size_t count = error.diagnostics().size();
+  if (count > 1) all += fmt::format("{} errors\n", count);
+  say(all);
+}
+
+bool Console::stdout_is_terminal() const {
+  return isatty(STDOUT_FILENO) != 0;
+}
+bool Console::stderr_is_terminal() const {
+  return isatty(STDERR_FILENO) != 0;
+}
+
+int Console::width() const {
+  winsize size{};
+  const bool known =
+      ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 || ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0;
+  return known && size.ws_col > 0 ? std::clamp<int>(size.ws_col, 40, 100) : 80;
+}
+
+std::string Console::styled(Style style, std::string_view text) const {
+  if (!color_) return std::string(text);
+  static constexpr int kCodes[] = {1, 31, 32, 33, 36, 2};
+  return fmt::format("\x1b[{}m{}\x1b[0m", kCodes[static_cast<int>(style)], text);
+}
+
+std::string wrapped(std::string_view text, std::size_t width, std::size_t indent) {
+  std::string out;
+  std::size_t column = 0;
+  while (!text.empty()) {
+    const std::size_t end = text.find_first_of(" \n");
+    const std::string_view word = text.substr(0, end);
+    if (column > indent && column + word.size() > width) {
+      while (out.ends_with(' ')) out.pop_back();
+      out += '\n' + std::string(indent, ' ');
+      column = indent;
+    }
+    out += word;
+    column += word.size();
+    if (end == std::string_view::npos) break;
+    out += text[end];
+    column = text[end] == '\n' ? 0 : column + 1;
+    text.remove_prefix(end + 1);
+  }
+  return out;
+}
+
+}  // namespace coppice::cli

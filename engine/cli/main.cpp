@@ -1,0 +1,66 @@
+#include <csignal>
+#include <exception>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "engine/cli/command.h"
+#include "engine/cli/console.h"
+#include "engine/cli/exit_status.h"
+#include "engine/cli/help.h"
+#include "engine/cli/parse.h"
+#include "engine/cli/version.h"
+#include "registry/component.h"
+
+namespace coppice::cli {
+namespace {
+
+int serve(const CommandLine& line, Console& console) {
+  const Request request = parse(line);
+  console.set_color(request.color);
+  const std::size_t width = static_cast<std::size_t>(console.width());
+  if (request.version) {
+    console.out(version_text());
+  } else if (request.help) {
+    console.out(request.command != nullptr ? help(*request.command, width) : overview(width, request.family));
+  } else if (request.command == nullptr) {
+    console.say(overview(width, request.family));
+    return kBadUsage;
+  } else {
+    return request.command->run(line, request.given, console);
+  }
+  return kDone;
+}
+
+/// The one place where errors become messages and exit statuses.
+int guarded(std::vector<std::string> arguments, Console& console) {
+  try {
+    Catalogue::instance().verify();
+    const int status = serve(CommandLine(std::move(arguments)), console);
+    console.flush();
+    return status;
+  } catch (const OutputClosed&) {
+    return kDone;
+  } catch (const ConfigError& error) {
+    console.say(error);
+    return kBadUsage;
+  } catch (const std::runtime_error& error) {
+    console.say(console.styled(Console::Style::red, "error: ") + error.what() + '\n');
+    return kFailed;
+  } catch (const std::exception& error) {
+    console.say(
+        console.styled(Console::Style::red, "internal error: ") + error.what() +
+        "\nThis is a mistake of the program, not yours; please report it with the command and its config.\n");
+    return kInternalError;
+  }
+}
+
+}  // namespace
+}  // namespace coppice::cli
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is seen where it is written to
+  coppice::cli::Console console;
+  console.set_color("auto");
+  return coppice::cli::guarded(std::vector<std::string>(argv + 1, argv + argc), console);
+}

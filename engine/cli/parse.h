@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "engine/cli/command.h"
+
+namespace coppice::cli {
+
+/// What the user asks for.
+struct Request {
+  const CommandInfo* command = nullptr;  ///< null: none was named
+  std::string family;                    ///< "policy" when only the first of two words was given
+  Given given;
+  bool help = false;
+  bool version = false;
+  std::string color = "auto";
+};
+
+/// The options of every subcommand: --help, --version, --color.
+const std::vector<ArgumentInfo>& global_arguments();
+
+/// Finds the subcommand (a config where one would stand means `run`) and sorts the arguments, in any order.
+/// Throws ConfigError with every unknown or incomplete argument, each with the nearest valid name.
+Request parse(const CommandLine& line);
+
+}  // namespace coppice::cli
