@@ -24,11 +24,11 @@ enum class Completes { nothing, config, file, folder, component, interface, node
 /// it.
 struct ArgumentInfo {
   std::string name;
-  std::string letter;  ///< "-j"; empty: none
-  std::string value;   ///< what stands for the value in help ("DIR"); empty: a flag
+  std::string letter = {};  ///< "-j"; empty: none
+  std::string value = {};   ///< what stands for the value in help ("DIR"); empty: a flag
   std::string doc;
-  std::vector<std::string> choices;
-  std::string default_text;
+  std::vector<std::string> choices = {};
+  std::string default_text = {};
   bool required = false;
   bool many = false;
   Completes completes = Completes::nothing;
@@ -53,9 +53,9 @@ enum class Group { experiments, results, components, policies, project };
 struct CommandInfo {
   std::string name;  ///< "run", "policy act"
   Group group = Group::experiments;
-  std::string doc;      ///< one line
-  std::string details;  ///< further paragraphs; may be empty
-  std::vector<Example> examples;
+  std::string doc;           ///< one line
+  std::string details = {};  ///< further paragraphs; may be empty
+  std::vector<Example> examples = {};
   bool hidden = false;
   std::vector<ArgumentInfo> arguments = {};
   /// Does it and returns the exit status; throws ConfigError for the user's mistakes.
