@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "engine/vocabulary/approximator.h"
+#include "solvers/approximators/forest.h"
+
+namespace coppice {
+
+// Operations on regression trees (thesis, 2.1.6 to 2.1.9 and Algorithm 14). Results go to trees that the
+// caller holds, whose memory is used again: in a loop nothing is allocated.
+
+/// The hyperrectangle that a tree is looked at in: low <= x <= high. Sides may be infinite, except for
+/// pruning.
+struct Box {
+  std::vector<double> low;
+  std::vector<double> high;
+
+  /// All of R^n.
+  static Box everything(std::size_t inputs);
+};
+
+/// The tree as a function of its last inputs, the first ones fixed to `prefix` (Algorithm 8), without the
+/// parts that cannot be reached in `box` (a box of the last inputs). Exact.
+void project(const TreeView& tree, std::span<const double> prefix, const Box& box, Tree& out);
+
+/// (w1 t1 + w2 t2) / (w1 + w2) in `box`, of two trees over the same inputs (Algorithm 9); exact. Leaves of
+/// different kinds give linear ones (Eqs. 2.6 to 2.8).
+void weighted_average(const TreeView& t1, const TreeView& t2, double w1, double w2, const Box& box,
+                      Tree& out);
+
+/// Makes leaves of preleaves, the one with the least loss first, until at most `max_leaves` (at least 1) are
+/// left (Algorithms 10 and 11). A new leaf is the mean of the old two by volume; the loss is the integral of
+/// the absolute difference over the preleaf's part of the box (Eq. 2.9). Sides of the box without width do
+/// not count in volumes.
+void prune(Tree& tree, const Box& box, std::size_t max_leaves);
+
+/// One tree for the mean of several, of at most `max_leaves` leaves (Algorithm 12).
+void merge(std::span<const Tree> trees, const Box& box, std::size_t max_leaves, Tree& out);
+
+/// The leaf with the largest value in the box: of a constant the centre of its part of the box, of a linear
+/// model the corner where it is largest (Algorithm 14, line 9). Of equal leaves the first from the low side.
+Maximum best_leaf(const TreeView& tree, const Box& box);
+
+std::size_t count_leaves(const TreeView& tree);  ///< Algorithm 3; 1 for a single leaf
+
+}  // namespace coppice
