@@ -18,8 +18,6 @@
 namespace coppice {
 namespace {
 
-constexpr std::size_t kLargestFile = std::size_t{64} << 20u;
-
 [[noreturn]] void fail(Place place, std::string message, std::string hint = {}) {
   throw ConfigError({Diagnostic{std::move(place), std::move(message), std::move(hint), {}}});
 }
@@ -38,8 +36,8 @@ std::string similar_file(const std::filesystem::path& path) {
   return fmt::format("did you mean '{}'?", (path.parent_path() / name).string());
 }
 
-/// The bytes of a file, at most one more than a config may have.
-std::string read_bytes(const std::string& path, const Place& place) {
+/// The bytes of a file; if they are more than `largest`, not all of them.
+std::string read_bytes(const std::string& path, const Place& place, std::size_t largest) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) fail(place, "this is a folder, not a file");
   errno = 0;
@@ -51,7 +49,7 @@ std::string read_bytes(const std::string& path, const Place& place) {
   }
   std::string bytes;
   std::vector<char> buffer(std::size_t{1} << 16u);
-  while (bytes.size() <= kLargestFile) {
+  while (bytes.size() <= largest) {
     const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), file.get());
     if (count == 0) break;
     bytes.append(buffer.data(), count);
@@ -182,13 +180,13 @@ const Element* Element::child(std::string_view child_name) const {
   return found == children.end() ? nullptr : &*found;
 }
 
-std::shared_ptr<const SourceFile> read_source(const std::string& path) {
+std::shared_ptr<const SourceFile> read_source(const std::string& path, std::size_t largest) {
   auto source = std::make_shared<SourceFile>();
   source->path = path;
   const Place place{source, 0, 0, 1, nullptr};
-  const std::string bytes = read_bytes(path, place);
-  if (bytes.size() > kLargestFile) {
-    fail(place, fmt::format("the file is larger than {} MiB, the most that is read", kLargestFile >> 20u));
+  const std::string bytes = read_bytes(path, place, largest);
+  if (bytes.size() > largest) {
+    fail(place, fmt::format("the file is larger than {} MiB, the most that is read", largest >> 20u));
   }
   if (trim(bytes).empty()) fail(place, "the file is empty");
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {

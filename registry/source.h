@@ -32,8 +32,10 @@ struct Element {
   const Element* child(std::string_view child_name) const;
 };
 
-/// Reads a file. A file that cannot be read, is empty or is not text gives one located error.
-std::shared_ptr<const SourceFile> read_source(const std::string& path);
+/// Reads a file of at most `largest` bytes. A file that cannot be read, is empty or is not text gives one
+/// located error.
+std::shared_ptr<const SourceFile> read_source(const std::string& path,
+                                              std::size_t largest = std::size_t{64} << 20);
 
 /// Parses the root element of a text, refusing what XML forbids and tinyxml2 lets pass: a second root, text
 /// after the root, entities other than the five, DOCTYPE; also text between elements. Throws ConfigError.
