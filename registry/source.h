@@ -15,6 +15,9 @@ struct Attribute {
   std::string value;
   Place name_place;
   Place value_place;  ///< of the first character inside the quotes
+  /// Its value could not be worked out, and that was reported: readers treat it as given and say nothing
+  /// more.
+  bool failed = false;
 };
 
 /// A located XML element; a plain value that expansion copies and edits.
@@ -23,6 +26,8 @@ struct Element {
   Place place;  ///< of the name, after '<'
   std::vector<Attribute> attributes;
   std::vector<Element> children;
+  /// Some of its children could not be worked out, and that was reported: readers do not miss any.
+  bool failed = false;
 
   const Attribute* find(std::string_view attribute) const;
   /// The attribute's value, or `fallback`.
