@@ -11,7 +11,7 @@ namespace coppice {
 
 /// One column of a tidy table; `unit` is SI and, when not empty, the name ends in it ("time_s").
 struct ColumnInfo {
-  enum class Type { number, integer, boolean, text };
+  enum class Type { number, integer, boolean, text };  ///< booleans are the integers 0 and 1
   std::string name;
   Type type = Type::number;
   std::string unit;
@@ -39,8 +39,11 @@ std::string cell_text(const Cell& cell);
 /// column). Throws std::runtime_error with the file and the system's reason when it cannot be written.
 void write_table(const std::filesystem::path& file, const Table& table);
 
-/// Reads any CSV (LF or CRLF). Types come from the schema beside it, else from the cells. Throws ConfigError
-/// with file, line and column for what is not CSV.
+/// Reads any CSV (LF or CRLF). Types come from the schema beside it, else from the cells; a boolean is 0
+/// or 1. Throws ConfigError with file, line and column for what is not CSV, or not of its column's type.
 Table read_table(const std::filesystem::path& file);
+
+/// <name>.schema.json beside <name>.csv: {"columns": [{"name", "type", "unit", "doc"}, ...]}.
+void write_schema(const std::filesystem::path& table, const std::vector<ColumnInfo>& columns);
 
 }  // namespace coppice

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <vector>
 
 #include "engine/vocabulary/matrix.h"
 #include "engine/vocabulary/space.h"
+#include "registry/error.h"
 
 namespace coppice {
 
@@ -35,11 +37,18 @@ struct Dataset {
 /// std::invalid_argument when the parts have different spaces.
 Dataset join(const std::vector<Dataset>& parts);
 
-/// Columns: episode, step, s_<axis>, action_id, a_<axis>, reward, n_<axis>, terminal (docs: "Datasets").
+/// Columns: episode, step, s_<axis>, action_id, a_<axis> (of the widest action), reward, n_<axis>, terminal;
+/// one transition per row. Throws std::runtime_error with the file and the system's reason when it cannot be
+/// written.
 void write_dataset(const std::filesystem::path& file, const Dataset& dataset);
 
-/// Reads what write_dataset wrote, or any CSV with these columns; `spaces` says which axes are expected.
-/// Throws ConfigError with file, line and column of every bad cell, and the nearest name for a wrong column.
+/// Reads what write_dataset wrote, or any CSV with these columns, in any order; `spaces` says which axes are
+/// expected. Other columns are skipped, unless their names begin as an axis's (s_, a_, n_). Throws
+/// ConfigError with file, line and column of the bad cells, and the nearest name for a column that is
+/// missing.
 Dataset read_dataset(const std::filesystem::path& file, const Spaces& spaces);
+
+/// Reads the columns s_<axis> of a CSV text (rows x axes). Throws as read_dataset.
+Matrix read_states(std::shared_ptr<const SourceFile> source, const Space& states);
 
 }  // namespace coppice

@@ -48,6 +48,7 @@ std::size_t Spaces::widest_action() const {
 }
 
 void Spaces::check() const {
+  if (states.empty()) throw std::invalid_argument("the state has no axis");
   check_axes("the state", states, kMaxStateSize);
   if (actions.empty()) throw std::invalid_argument("there is no action");
   for (const ActionBox& box : actions)

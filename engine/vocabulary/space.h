@@ -77,8 +77,8 @@ struct Spaces {
 
   std::size_t state_size() const { return states.size(); }
   std::size_t widest_action() const;  ///< axes of the action with most of them
-  /// Throws std::invalid_argument naming what is wrong: no action, too many axes, a name that is empty or
-  /// stands twice, limits that are NaN or in the wrong order.
+  /// Throws std::invalid_argument naming what is wrong: no axis, no action, too many axes, a name that is
+  /// empty or stands twice, limits that are NaN or in the wrong order.
   void check() const;
   friend bool operator==(const Spaces&, const Spaces&) = default;
 };
