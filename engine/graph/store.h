@@ -77,9 +77,4 @@ struct Garbage {
 /// Removes results that no run folder below `out` refers to. Throws ConfigError while a run uses the store.
 Garbage collect_garbage(const std::filesystem::path& out, bool dry_run);
 
-/// XXH3-128 as 32 hexadecimal digits.
-std::string content_hash(std::string_view bytes);
-/// The same of a file's content. Throws std::runtime_error with file and reason.
-std::string file_hash(const std::filesystem::path& file);
-
 }  // namespace coppice
