@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "registry/text.h"
+
 namespace coppice::cli {
 namespace {
 
@@ -18,14 +20,14 @@ CommandLine::CommandLine(std::vector<std::string> arguments) : arguments_(std::m
   std::string text = "runner";
   for (const std::string& argument : arguments_) {
     const std::string word = quoted(argument);
-    columns_.push_back(static_cast<int>(text.size()) + 2 + (word == argument ? 0 : 1));
+    columns_.push_back(static_cast<int>(count_characters(text)) + 2 + (word == argument ? 0 : 1));
     text += " " + word;
   }
   file_ = std::make_shared<const SourceFile>(SourceFile{"<command line>", std::move(text)});
 }
 
 Place CommandLine::place(std::string_view text) const {
-  Place place{file_, 1, 1, static_cast<int>(file_->text.size()), nullptr};
+  Place place{file_, 1, 1, static_cast<int>(count_characters(file_->text)), nullptr};
   for (std::size_t i = 0; i < arguments_.size(); ++i) {
     const std::string_view argument = arguments_[i];
     if (text.empty() || !argument.ends_with(text)) continue;
@@ -33,8 +35,8 @@ Place CommandLine::place(std::string_view text) const {
     const bool whole = before == 0;
     const bool value = before > 1 && (argument[before - 1] == '=' || (before == 2 && argument[0] == '-'));
     if (!whole && !value) continue;
-    place.column = columns_[i] + static_cast<int>(before);
-    place.length = static_cast<int>(text.size());
+    place.column = columns_[i] + static_cast<int>(count_characters(argument.substr(0, before)));
+    place.length = static_cast<int>(count_characters(text));
     if (whole) return place;
   }
   return place;

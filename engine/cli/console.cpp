@@ -92,34 +92,13 @@ int Console::width() const {
   winsize size{};
   const bool known =
       ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 || ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0;
-  return known && size.ws_col > 0 ? std::clamp<int>(size.ws_col, 40, 100) : 80;
+  return known && size.ws_col > 0 ? std::clamp<int>(size.ws_col, 20, 100) : 80;
 }
 
 std::string Console::styled(Style style, std::string_view text) const {
   if (!color_) return std::string(text);
   static constexpr int kCodes[] = {1, 31, 32, 33, 36, 2};
   return fmt::format("\x1b[{}m{}\x1b[0m", kCodes[static_cast<int>(style)], text);
-}
-
-std::string wrapped(std::string_view text, std::size_t width, std::size_t indent) {
-  std::string out;
-  std::size_t column = 0;
-  while (!text.empty()) {
-    const std::size_t end = text.find_first_of(" \n");
-    const std::string_view word = text.substr(0, end);
-    if (column > indent && column + word.size() > width) {
-      while (out.ends_with(' ')) out.pop_back();
-      out += '\n' + std::string(indent, ' ');
-      column = indent;
-    }
-    out += word;
-    column += word.size();
-    if (end == std::string_view::npos) break;
-    out += text[end];
-    column = text[end] == '\n' ? 0 : column + 1;
-    text.remove_prefix(end + 1);
-  }
-  return out;
 }
 
 }  // namespace coppice::cli

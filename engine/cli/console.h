@@ -38,7 +38,4 @@ class Console {
   bool color_ = false;
 };
 
-/// Wraps each line of `text` at spaces, later lines of it indented by `indent` columns.
-std::string wrapped(std::string_view text, std::size_t width, std::size_t indent = 0);
-
 }  // namespace coppice::cli

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "engine/cli/console.h"
+#include "engine/cli/layout.h"
 #include "engine/cli/parse.h"
 
 namespace coppice::cli {
