@@ -43,6 +43,7 @@ struct InputNode {
   std::string key;
   std::vector<PointValue> labels;    ///< columns that name it in tables: sweep columns, "problem", "policy"
   std::vector<std::string> streams;  ///< streams of draws it depends on ("collect 0"), its own first
+  std::filesystem::path timing;      ///< its timing.csv; empty for definitions and while checking
 };
 
 /// What a node sees while it is checked and while it runs.
@@ -88,6 +89,9 @@ class Node : public NodeOptions {
   virtual std::vector<std::string> makes() const = 0;
   /// True when there is nothing to run: the element is all (problem, and policy without a problem).
   virtual bool definition() const { return false; }
+  /// False when draws() plays no part: seed, label and replicate then stay out of its key, and it has no
+  /// stream.
+  virtual bool random() const { return true; }
   /// True when a reference parameter takes several nodes although the node has no sweep or replicate of its
   /// own (table, figure, compare, select; train's samples).
   virtual bool gathers(std::string_view) const { return false; }
