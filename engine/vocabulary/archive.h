@@ -30,6 +30,8 @@ class Archive {
     wrong_type(name);
   }
   bool has(std::string_view name) const;
+  /// All arrays with their full names, sorted.
+  const std::map<std::string, Array, std::less<>>& arrays() const { return arrays_; }
 
   /// While alive, names are taken below `name/`.
   class Scope {

@@ -2,6 +2,9 @@
 
 #include <memory>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/vocabulary/archive.h"
 #include "engine/vocabulary/random.h"
@@ -37,6 +40,9 @@ class Policy {
   /// that do not make a valid policy; it is called before prepare.
   virtual void save(Archive&) const {}
   virtual void load(Archive&) {}
+
+  /// What people want to know of a learned policy: names and numbers ("leaves", 812; "depth", 14).
+  virtual std::vector<std::pair<std::string, double>> facts() const { return {}; }
 };
 
 /// A policy with the resolved element that, with its arrays, makes it again.
