@@ -13,6 +13,7 @@ double tan(double x);
 double atan2(double y, double x);
 double exp(double x);
 double log(double x);
+double log1p(double x);
 double pow(double x, double y);
 }  // namespace elementary
 

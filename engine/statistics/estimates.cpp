@@ -1,0 +1,87 @@
+#include "engine/statistics/estimates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace coppice {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<double> sorted(std::span<const double> values) {
+  std::vector<double> copy(values.begin(), values.end());
+  std::sort(copy.begin(), copy.end());
+  return copy;
+}
+
+}  // namespace
+
+double mean(std::span<const double> values) {
+  if (values.empty()) return kNone;
+  double sum = 0;
+  for (double value : values) sum += value;
+  const double first = sum / static_cast<double>(values.size());
+  if (!std::isfinite(first)) return first;
+  double rest = 0;  // what rounding left out of the first pass
+  for (double value : values) rest += value - first;
+  return first + rest / static_cast<double>(values.size());
+}
+
+double standard_deviation(std::span<const double> values) {
+  if (values.size() < 2) return kNone;
+  const double centre = mean(values);
+  double squares = 0;
+  for (double value : values) squares += (value - centre) * (value - centre);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+double quantile(std::span<const double> values, double p) {
+  if (!(p >= 0 && p <= 1)) throw std::logic_error("a quantile's p is in [0, 1]");
+  if (values.empty()) return kNone;
+  const std::vector<double> order = sorted(values);
+  const double position = p * static_cast<double>(order.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
+  const std::size_t above = std::min(below + 1, order.size() - 1);
+  return order[below] + (position - std::floor(position)) * (order[above] - order[below]);
+}
+
+double median(std::span<const double> values) {
+  return quantile(values, 0.5);
+}
+
+double interquartile_mean(std::span<const double> values) {
+  const std::vector<double> order = sorted(values);
+  const std::size_t cut = order.size() / 4;
+  return mean(std::span<const double>(order).subspan(cut, order.size() - 2 * cut));
+}
+
+Estimate estimate(std::span<const double> units, Better better) {
+  Estimate result;
+  result.units = units.size();
+  result.mean = mean(units);
+  result.sd = standard_deviation(units);
+  result.ci95 = t_interval(units);
+  result.median = median(units);
+  result.iqm = interquartile_mean(units);
+  const double lowest = quantile(units, 0);
+  const double highest = quantile(units, 1);
+  result.worst = better == Better::higher ? lowest : highest;
+  result.best = better == Better::higher ? highest : lowest;
+  return result;
+}
+
+Estimate estimate(const std::vector<std::vector<double>>& runs, Unit unit, Better better) {
+  std::vector<double> units;
+  for (const std::vector<double>& episodes : runs) {
+    if (unit == Unit::training_run) {
+      units.push_back(mean(episodes));
+    } else {
+      units.insert(units.end(), episodes.begin(), episodes.end());
+    }
+  }
+  return estimate(units, better);
+}
+
+}  // namespace coppice
