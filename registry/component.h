@@ -34,10 +34,12 @@ class Catalogue {
   void add(ComponentInfo info);
   /// Null when there is none.
   const ComponentInfo* find(std::string_view interface, std::string_view name) const;
-  std::vector<std::string> interfaces() const;                       ///< sorted
+  std::vector<std::string> interfaces() const;                              ///< sorted
   std::vector<const ComponentInfo*> all(std::string_view interface) const;  ///< sorted by name
-  std::vector<std::string> names(std::string_view interface) const;  ///< sorted
-  /// Throws std::logic_error naming every duplicate and every component or parameter without doc.
+  std::vector<std::string> names(std::string_view interface) const;         ///< sorted
+  /// Throws std::logic_error naming every duplicate, everything without doc or source, and every declaration
+  /// that contradicts itself (units that are not SI, defaults out of bounds, slots for interfaces without
+  /// components).
   void verify() const;
 
  private:
@@ -45,29 +47,34 @@ class Catalogue {
   std::vector<std::string> problems_;
 };
 
-/// Turns a plain struct into an interface; specialised beside interfaces that accept plain structs (Problem). Has
-/// `static std::shared_ptr<Interface> make(T object, std::string component_name)`.
+/// Every component of a resolved element, itself included, with its version: "solver/fqi@1
+/// approximator/extra_trees@2", sorted, each once. For cache keys.
+std::string component_versions(std::string_view interface, const Element& resolved);
+
+/// Turns a plain struct into an interface; specialised beside interfaces that accept plain structs (Problem).
+/// Has `static std::shared_ptr<Interface> make(T object, std::string component_name)`.
 template <class Interface>
 struct Adapter;
 
-/// Registers T as a component of Interface; a constant at namespace scope in T's source file. T's parameters come from
-/// `static Parameters<T> T::parameters()`; relations between them from an optional `void T::check() const`, which
-/// throws std::invalid_argument with the broken rule.
+/// Registers T as a component of Interface; a constant at namespace scope in T's source file. T's parameters
+/// come from `static Parameters<T> T::parameters()`; relations between them from an optional `void T::check()
+/// const`, which throws std::invalid_argument with the broken rule.
 template <class Interface, class T>
 class Component {
  public:
   Component(std::string name, std::string doc, std::string source, int version = 1) {
     const Parameters<T> parameters = T::parameters();
-    Catalogue::instance().add({Interface::kInterface, std::move(name), std::move(doc), std::move(source), version,
-                               parameters.parameters(), parameters.slots(),
-                               [parameters](const Element& element, Element* resolved, Diagnostics& diagnostics) {
-                                 return make(parameters, element, resolved, diagnostics);
-                               }});
+    Catalogue::instance().add(
+        {Interface::kInterface, std::move(name), std::move(doc), std::move(source), version,
+         parameters.parameters(), parameters.slots(),
+         [parameters](const Element& element, Element* resolved, Diagnostics& diagnostics) {
+           return make(parameters, element, resolved, diagnostics);
+         }});
   }
 
  private:
-  static std::shared_ptr<void> make(const Parameters<T>& parameters, const Element& element, Element* resolved,
-                                    Diagnostics& diagnostics) {
+  static std::shared_ptr<void> make(const Parameters<T>& parameters, const Element& element,
+                                    Element* resolved, Diagnostics& diagnostics) {
     const std::size_t before = diagnostics.size();
     Reader reader(element, resolved, &diagnostics);
     T object = parameters.read(reader);
@@ -88,8 +95,8 @@ class Component {
   }
 };
 
-/// Makes the component that `element` names. Throws nothing for the user's mistakes: they go to `diagnostics`, and the
-/// object is then null. `resolved` has every parameter with its value.
+/// Makes the component that `element` names. Throws nothing for the user's mistakes: they go to
+/// `diagnostics`, and the object is then null. `resolved` has every parameter with its value.
 template <class Interface>
 Sub<Interface> make(const Element& element, Diagnostics& diagnostics) {
   Sub<Interface> made;

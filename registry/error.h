@@ -70,6 +70,8 @@ class Diagnostics {
   void error(const Place& place, std::string message, std::string hint = {},
              std::vector<std::string> notes = {});
   void add(const ConfigError& error);
+  /// Counts a mistake that was reported elsewhere, so that nothing is made of what it left incomplete.
+  void already_reported() { ++reported_; }
   bool empty() const { return all_.empty(); }
   /// How often a mistake was reported, repetitions included: it grows with every call of error().
   std::size_t size() const { return reported_; }

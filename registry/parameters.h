@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -23,11 +24,21 @@ struct Bounds {
   bool low_open = false;
   bool high_open = false;
 };
-inline Bounds any() { return {}; }
-inline Bounds above(double low) { return {.low = low, .low_open = true}; }
-inline Bounds at_least(double low) { return {.low = low}; }
-inline Bounds at_most(double high) { return {.high = high}; }
-inline Bounds between(double low, double high) { return {.low = low, .high = high}; }
+inline Bounds any() {
+  return {};
+}
+inline Bounds above(double low) {
+  return {.low = low, .low_open = true};
+}
+inline Bounds at_least(double low) {
+  return {.low = low};
+}
+inline Bounds at_most(double high) {
+  return {.high = high};
+}
+inline Bounds between(double low, double high) {
+  return {.low = low, .high = high};
+}
 
 /// A file named by the user, relative to the config file that names it; its content enters the cache key.
 struct FilePath {
@@ -75,7 +86,12 @@ class Reader {
   const Element& element() const { return element_; }
   Element& resolved() { return *resolved_; }
   Diagnostics& diagnostics() { return *diagnostics_; }
-  void error(const Place& place, std::string message, std::string hint = {});
+  void error(const Place& place, std::string message, std::string hint = {},
+             std::vector<std::string> notes = {});
+  /// Where `length` bytes from `offset` of an attribute's value stand; the element when the program made the
+  /// value.
+  Place place_of(const Attribute& attribute, std::size_t offset = 0,
+                 std::size_t length = std::string::npos) const;
 
  private:
   const Element& element_;
@@ -83,8 +99,8 @@ class Reader {
   Diagnostics* diagnostics_;
 };
 
-/// A sub-component, and the resolved element that makes it again. The default is a component's name (said in the
-/// member's initializer); an empty name means "none".
+/// A sub-component, and the resolved element that makes it again. The default is a component's name (said in
+/// the member's initializer); an empty name means "none".
 template <class Interface>
 struct Sub {
   std::shared_ptr<Interface> object;
@@ -127,26 +143,39 @@ std::string print_value(const ParameterInfo&, const References&);
 
 template <class V>
 constexpr ValueType type_of() {
-  if constexpr (std::is_same_v<V, double>) return ValueType::number;
-  else if constexpr (std::is_same_v<V, int> || std::is_same_v<V, std::int64_t>) return ValueType::integer;
-  else if constexpr (std::is_same_v<V, bool>) return ValueType::boolean;
-  else if constexpr (std::is_same_v<V, std::string>) return ValueType::text;
-  else if constexpr (std::is_same_v<V, std::vector<double>>) return ValueType::numbers;
-  else if constexpr (std::is_same_v<V, std::vector<std::string>>) return ValueType::texts;
-  else if constexpr (std::is_same_v<V, FilePath>) return ValueType::file;
-  else if constexpr (std::is_same_v<V, Reference>) return ValueType::reference;
-  else return ValueType::references;
+  if constexpr (std::is_same_v<V, double>)
+    return ValueType::number;
+  else if constexpr (std::is_same_v<V, int> || std::is_same_v<V, std::int64_t>)
+    return ValueType::integer;
+  else if constexpr (std::is_same_v<V, bool>)
+    return ValueType::boolean;
+  else if constexpr (std::is_same_v<V, std::string>)
+    return ValueType::text;
+  else if constexpr (std::is_same_v<V, std::vector<double>>)
+    return ValueType::numbers;
+  else if constexpr (std::is_same_v<V, std::vector<std::string>>)
+    return ValueType::texts;
+  else if constexpr (std::is_same_v<V, FilePath>)
+    return ValueType::file;
+  else if constexpr (std::is_same_v<V, Reference>)
+    return ValueType::reference;
+  else
+    return ValueType::references;
 }
 
 /// Makes the component named by `element` for `interface` (catalogue look-up); null after an error.
 std::shared_ptr<void> make_component(std::string_view interface, const Element& element, Element* resolved,
                                      Diagnostics& diagnostics);
-/// Reports attributes and children that no declaration knows, with the nearest valid name.
-void check_unknown(const std::vector<ParameterInfo>&, const std::vector<SlotInfo>&, Reader&);
-/// The elements that fill a slot (looks inside `<slot>` unless direct), after checking their number.
-std::vector<const Element*> slot_elements(const SlotInfo&, Reader&);
-/// Puts the resolved sub-components of a slot into the resolved element.
-void resolve_slot(const SlotInfo&, Reader&, std::vector<Element> resolved);
+/// Reports a required parameter that was not given.
+void report_missing(const ParameterInfo&, Reader&);
+/// Reports attributes that no declaration knows, with the nearest valid name.
+void check_attributes(const std::vector<ParameterInfo>&, const std::vector<SlotInfo>&, Reader&);
+/// The elements that fill each slot (those inside `<slot>` unless direct). Reports too few, too many and
+/// unknown ones.
+std::vector<std::vector<const Element*>> assign_children(const std::vector<ParameterInfo>&,
+                                                         const std::vector<SlotInfo>&, Reader&);
+/// Puts the sub-components of a slot into an element.
+void fill_slot(const SlotInfo&, Element& element, std::vector<Element> parts);
 }  // namespace detail
 
 /// The parameters of a component T: its members with unit, bounds and doc; the defaults are those of `T{}`.
@@ -157,12 +186,14 @@ class Parameters {
   /// A number (double), integer, boolean, text, list or file with unit, doc and bounds.
   template <class V>
   Parameters& add(std::string name, V T::*member, std::string unit, std::string doc, Bounds bounds = {}) {
-    return insert(base(std::move(name), detail::type_of<V>(), std::move(unit), std::move(doc), bounds), member, false);
+    return insert(base(std::move(name), detail::type_of<V>(), std::move(unit), std::move(doc), bounds),
+                  member, false);
   }
   /// As add, but the user must give it.
   template <class V>
   Parameters& require(std::string name, V T::*member, std::string unit, std::string doc, Bounds bounds = {}) {
-    return insert(base(std::move(name), detail::type_of<V>(), std::move(unit), std::move(doc), bounds), member, true);
+    return insert(base(std::move(name), detail::type_of<V>(), std::move(unit), std::move(doc), bounds),
+                  member, true);
   }
   /// A value that may be "auto"; `doc` says how it is then worked out.
   template <class V>
@@ -182,14 +213,16 @@ class Parameters {
   Parameters& component(std::string name, Sub<I> T::*member, std::string doc, bool required = false) {
     return slot({std::move(name), I::kInterface, false, false, required, {}, std::move(doc)}, member);
   }
-  /// A sub-component that stands directly in the element: `<component/>`. At most one direct slot per interface.
+  /// A sub-component that stands directly in the element: `<component/>`. At most one direct slot per
+  /// interface.
   template <class I>
   Parameters& direct(Sub<I> T::*member, std::string doc, bool required = true) {
     return slot({I::kInterface, I::kInterface, true, false, required, {}, std::move(doc)}, member);
   }
   /// Several sub-components: `<name><a/><b/></name>`.
   template <class I>
-  Parameters& components(std::string name, std::vector<Sub<I>> T::*member, std::string doc, bool required = false);
+  Parameters& components(std::string name, std::vector<Sub<I>> T::*member, std::string doc,
+                         bool required = false);
 
   const std::vector<ParameterInfo>& parameters() const { return parameters_; }
   const std::vector<SlotInfo>& slots() const { return slots_; }
@@ -205,10 +238,11 @@ class Parameters {
     std::function<std::string(const T&)> print;
   };
   struct SlotField {
-    std::function<void(T&, Reader&)> read;
+    std::function<void(T&, const std::vector<const Element*>& given, Reader&)> read;
     std::function<std::vector<Element>(const T&)> print;
   };
-  static ParameterInfo base(std::string name, ValueType type, std::string unit, std::string doc, Bounds bounds);
+  static ParameterInfo base(std::string name, ValueType type, std::string unit, std::string doc,
+                            Bounds bounds);
   template <class V>
   Parameters& insert(ParameterInfo info, V T::*member, bool required);
   template <class I>

@@ -10,7 +10,8 @@
 namespace coppice {
 
 template <class T>
-ParameterInfo Parameters<T>::base(std::string name, ValueType type, std::string unit, std::string doc, Bounds bounds) {
+ParameterInfo Parameters<T>::base(std::string name, ValueType type, std::string unit, std::string doc,
+                                  Bounds bounds) {
   ParameterInfo info;
   info.name = std::move(name);
   info.type = type;
@@ -70,17 +71,20 @@ Parameters<T>& Parameters<T>::choice(std::string name, E T::*member, std::vector
   Field field;
   field.read = [info, member](T& object, const Attribute* given, Reader& reader) {
     std::size_t index = 0;
-    if (given != nullptr && detail::read_choice(info, *given, reader, index)) object.*member = static_cast<E>(index);
+    if (given != nullptr && detail::read_choice(info, *given, reader, index))
+      object.*member = static_cast<E>(index);
   };
-  field.print = [info, member](const T& object) { return info.choices[static_cast<std::size_t>(object.*member)]; };
+  field.print = [info, member](const T& object) {
+    return info.choices[static_cast<std::size_t>(object.*member)];
+  };
   parameters_.push_back(std::move(info));
   fields_.push_back(std::move(field));
   return *this;
 }
 
 template <class T>
-Parameters<T>& Parameters<T>::reference(std::string name, Reference T::*member, std::string artifact, std::string doc,
-                                        bool required) {
+Parameters<T>& Parameters<T>::reference(std::string name, Reference T::*member, std::string artifact,
+                                        std::string doc, bool required) {
   ParameterInfo info = base(std::move(name), ValueType::reference, "", std::move(doc), {});
   info.artifact = std::move(artifact);
   return insert(std::move(info), member, required);
@@ -100,9 +104,8 @@ template <class I>
 Parameters<T>& Parameters<T>::slot(SlotInfo info, Sub<I> T::*member) {
   info.default_component = (T{}.*member).resolved.name;
   SlotField field;
-  field.read = [info, member](T& object, Reader& reader) {
+  field.read = [info, member](T& object, const std::vector<const Element*>& given, Reader& reader) {
     Sub<I>& sub = object.*member;
-    const std::vector<const Element*> given = detail::slot_elements(info, reader);
     if (given.empty() && sub.resolved.name.empty()) return;
     Element element = given.empty() ? sub.resolved : *given.front();
     if (given.empty()) element.place = reader.element().place;
@@ -110,7 +113,7 @@ Parameters<T>& Parameters<T>::slot(SlotInfo info, Sub<I> T::*member) {
     sub.object = std::static_pointer_cast<I>(
         detail::make_component(I::kInterface, element, &resolved, reader.diagnostics()));
     sub.resolved = resolved;
-    detail::resolve_slot(info, reader, {std::move(resolved)});
+    detail::fill_slot(info, reader.resolved(), {std::move(resolved)});
   };
   field.print = [info, member](const T& object) {
     const Sub<I>& sub = object.*member;
@@ -127,16 +130,16 @@ Parameters<T>& Parameters<T>::components(std::string name, std::vector<Sub<I>> T
                                          bool required) {
   SlotInfo info{std::move(name), I::kInterface, false, true, required, {}, std::move(doc)};
   SlotField field;
-  field.read = [info, member](T& object, Reader& reader) {
+  field.read = [info, member](T& object, const std::vector<const Element*>& given, Reader& reader) {
     std::vector<Element> resolved;
-    for (const Element* element : detail::slot_elements(info, reader)) {
+    for (const Element* element : given) {
       Sub<I> sub;
       sub.object = std::static_pointer_cast<I>(
           detail::make_component(I::kInterface, *element, &sub.resolved, reader.diagnostics()));
       resolved.push_back(sub.resolved);
       (object.*member).push_back(std::move(sub));
     }
-    detail::resolve_slot(info, reader, std::move(resolved));
+    detail::fill_slot(info, reader.resolved(), std::move(resolved));
   };
   field.print = [member](const T& object) {
     std::vector<Element> elements;
@@ -155,15 +158,15 @@ T Parameters<T>::read(Reader& reader) const {
   reader.resolved().place = reader.element().place;
   for (std::size_t i = 0; i < fields_.size(); ++i) {
     const Attribute* given = reader.element().find(parameters_[i].name);
-    if (given == nullptr && parameters_[i].required) {
-      reader.error(reader.element().place, "<" + reader.element().name + "> needs '" + parameters_[i].name + "'",
-                   parameters_[i].doc);
-    }
-    fields_[i].read(object, given, reader);
+    if (given == nullptr && parameters_[i].required) detail::report_missing(parameters_[i], reader);
+    const bool failed = given != nullptr && given->failed;
+    if (failed) reader.diagnostics().already_reported();
+    fields_[i].read(object, failed ? nullptr : given, reader);
     reader.resolved().set(parameters_[i].name, fields_[i].print(object));
   }
-  for (const SlotField& field : slot_fields_) field.read(object, reader);
-  detail::check_unknown(parameters_, slots_, reader);
+  const auto children = detail::assign_children(parameters_, slots_, reader);
+  for (std::size_t i = 0; i < slots_.size(); ++i) slot_fields_[i].read(object, children[i], reader);
+  detail::check_attributes(parameters_, slots_, reader);
   return object;
 }
 
@@ -172,18 +175,8 @@ Element Parameters<T>::print(const T& object, std::string name) const {
   Element element;
   element.name = std::move(name);
   for (std::size_t i = 0; i < fields_.size(); ++i) element.set(parameters_[i].name, fields_[i].print(object));
-  for (std::size_t i = 0; i < slot_fields_.size(); ++i) {
-    std::vector<Element> parts = slot_fields_[i].print(object);
-    if (parts.empty()) continue;
-    if (slots_[i].direct) {
-      for (Element& part : parts) element.children.push_back(std::move(part));
-    } else {
-      Element wrapper;
-      wrapper.name = slots_[i].name;
-      wrapper.children = std::move(parts);
-      element.children.push_back(std::move(wrapper));
-    }
-  }
+  for (std::size_t i = 0; i < slots_.size(); ++i)
+    detail::fill_slot(slots_[i], element, slot_fields_[i].print(object));
   return element;
 }
 

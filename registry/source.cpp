@@ -22,18 +22,9 @@ namespace {
   throw ConfigError({Diagnostic{std::move(place), std::move(message), std::move(hint), {}}});
 }
 
-/// The nearest name among the files beside a missing one.
-std::string similar_file(const std::filesystem::path& path) {
-  std::vector<std::string> names;
-  std::error_code ignored;
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-    names.push_back(entry.path().filename().string());
-  }
-  std::sort(names.begin(), names.end());
-  const std::string name = nearest(path.filename().string(), names);
-  if (name.empty()) return "";
-  return fmt::format("did you mean '{}'?", (path.parent_path() / name).string());
+std::string missing_file_hint(const std::filesystem::path& path) {
+  const std::string name = nearest_file(path.string());
+  return name.empty() ? "" : fmt::format("did you mean '{}'?", (path.parent_path() / name).string());
 }
 
 /// The bytes of a file; if they are more than `largest`, not all of them.
@@ -45,7 +36,7 @@ std::string read_bytes(const std::string& path, const Place& place, std::size_t 
   if (!file) {
     const int reason = errno;
     fail(place, "cannot read the file: " + std::generic_category().message(reason),
-         reason == ENOENT ? similar_file(path) : "");
+         reason == ENOENT ? missing_file_hint(path) : "");
   }
   std::string bytes;
   std::vector<char> buffer(std::size_t{1} << 16u);

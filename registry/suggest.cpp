@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
+#include <system_error>
+#include <utility>
 
 #include "registry/text.h"
 
@@ -77,6 +80,18 @@ std::string suggestion(std::string_view given, const std::vector<std::string>& k
   std::string text = "valid: " + join({known.begin(), known.begin() + static_cast<std::ptrdiff_t>(shown)});
   if (known.size() > shown) text += fmt::format(" and {} more", known.size() - shown);
   return text;
+}
+
+std::string nearest_file(const std::string& path) {
+  const std::filesystem::path missing(path);
+  const std::filesystem::path folder = missing.has_parent_path() ? missing.parent_path() : ".";
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());  // folders list their files in any order
+  return nearest(missing.filename().string(), names);
 }
 
 }  // namespace coppice

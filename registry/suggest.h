@@ -12,4 +12,7 @@ std::string nearest(std::string_view given, const std::vector<std::string>& know
 /// "did you mean 'x'?" when a name is near, else "valid: a, b, c" (the first dozen), else "".
 std::string suggestion(std::string_view given, const std::vector<std::string>& known);
 
+/// The name in the folder of `path` that is nearest to its last part, or "".
+std::string nearest_file(const std::string& path);
+
 }  // namespace coppice
