@@ -3,8 +3,12 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "engine/data/table_file.h"
 #include "engine/graph/node.h"
+#include "engine/vocabulary/approximator.h"
 #include "engine/vocabulary/dataset.h"
 #include "engine/vocabulary/policy.h"
 #include "engine/vocabulary/problem.h"
@@ -12,6 +16,15 @@
 namespace coppice {
 
 // How node kinds read each other. All throw ConfigError or std::invalid_argument with what is wrong.
+
+// Names of the files that nodes make for others.
+inline constexpr std::string_view kPolicyFile = "policy.policy";
+inline constexpr std::string_view kDatasetFile = "dataset.csv";
+inline constexpr std::string_view kFunctionFile = "function.function";  ///< of a fit
+inline constexpr std::string_view kValueFile = "value.function";        ///< of a training
+inline constexpr std::string_view kEvaluationFile = "evaluation.csv";
+inline constexpr std::string_view kReturnsFile = "returns.csv";
+inline constexpr std::string_view kProgressFile = "progress.csv";
 
 /// The problem of a `problem` node, made from its element.
 std::shared_ptr<const Problem> load_problem(const InputNode& node);
@@ -23,9 +36,18 @@ MadePolicy load_policy(const InputNode& node, const Problem& problem);
 /// The dataset of a node that makes one.
 Dataset load_dataset(const InputNode& node, const Spaces& spaces);
 
+/// The value function of a node that makes a function of the state axes (fit, train). While checking it is
+/// not there yet: null.
+MadeFunction load_value_function(const InputNode& node, const Spaces& spaces);
+
+/// Throws std::invalid_argument when states and actions of `given` are not those of `problem`, up to their
+/// limits: a policy learned for one variant of a problem can act in another. `what` names the owner of
+/// `given`.
+void require_same_axes(const Spaces& given, const Spaces& problem, std::string_view what);
+
 /// What a policy file holds (see docs/policy-files.md).
 struct PolicyFile {
-  std::string writer;      ///< name and version of the program
+  std::string writer;      ///< name and version of the program; filled in by writing when empty
   std::string provenance;  ///< key of the node that made it
   Spaces spaces;           ///< empty when the policy was saved without a problem
   Element component;       ///< resolved
@@ -37,5 +59,19 @@ void write_policy_file(const std::filesystem::path& file, const PolicyFile& cont
 PolicyFile read_policy_file(const std::filesystem::path& file);
 /// The policy of a file, loaded but not prepared.
 MadePolicy make_policy(const PolicyFile& file);
+
+/// What a function file holds.
+struct FunctionFile {
+  std::string writer;               ///< as in PolicyFile
+  std::string provenance;           ///< as in PolicyFile
+  std::vector<std::string> inputs;  ///< columns of datasets ("s_position")
+  std::string output;               ///< column of datasets, or "value"
+  Element component;                ///< resolved
+  Archive arrays;
+};
+/// As write_policy_file, read_policy_file and make_policy.
+void write_function_file(const std::filesystem::path& file, const FunctionFile& content);
+FunctionFile read_function_file(const std::filesystem::path& file);
+MadeFunction make_function(const FunctionFile& file);
 
 }  // namespace coppice

@@ -1,0 +1,109 @@
+#include "engine/graph/artifacts.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace coppice {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class Interface>
+Sub<Interface> made_component(const Element& element) {
+  Diagnostics diagnostics;
+  Sub<Interface> made = make<Interface>(element, diagnostics);
+  diagnostics.throw_if_any();
+  return made;
+}
+
+void require_same(const Space& given, const Space& wanted, std::string_view what, std::string_view part) {
+  if (given.size() != wanted.size()) {
+    throw std::invalid_argument(
+        fmt::format("{} has {} axes for {}, the problem {}", what, given.size(), part, wanted.size()));
+  }
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const Axis& a = given[i];
+    const Axis& b = wanted[i];
+    if (a.name == b.name && a.unit == b.unit && a.circular == b.circular) continue;
+    const auto text = [](const Axis& axis) {
+      return fmt::format("'{}'{}{}{}", axis.name, axis.unit.empty() ? "" : " in ", axis.unit,
+                         axis.circular ? " (circular)" : "");
+    };
+    throw std::invalid_argument(
+        fmt::format("{} has {} as axis {} of {}, the problem {}", what, text(a), i + 1, part, text(b)));
+  }
+}
+
+/// The component of a policy that is nothing but its element; null for learned ones and those from files.
+const Element* configured_policy(const InputNode& node) {
+  const bool configured = node.kind == "policy" && !node.element.children.empty();
+  return configured ? &node.element.children.front() : nullptr;
+}
+
+/// Where the policy file of a node is; empty where there is none yet.
+fs::path policy_file(const InputNode& node) {
+  if (!node.folder.empty()) return node.folder / kPolicyFile;
+  return node.kind == "policy" ? fs::path(node.element.get("file")) : fs::path();
+}
+
+}  // namespace
+
+void require_same_axes(const Spaces& given, const Spaces& problem, std::string_view what) {
+  require_same(given.states, problem.states, what, "the state");
+  if (given.actions.size() != problem.actions.size()) {
+    throw std::invalid_argument(
+        fmt::format("{} has {} actions, the problem {}", what, given.actions.size(), problem.actions.size()));
+  }
+  for (std::size_t i = 0; i < given.actions.size(); ++i) {
+    const ActionBox& a = given.actions[i];
+    const ActionBox& b = problem.actions[i];
+    if (a.name != b.name) {
+      throw std::invalid_argument(
+          fmt::format("{} has '{}' as action {}, the problem '{}'", what, a.name, i, b.name));
+    }
+    require_same(a.axes, b.axes, what, fmt::format("action '{}'", a.name));
+  }
+}
+
+std::shared_ptr<const Problem> load_problem(const InputNode& node) {
+  if (node.element.children.empty()) throw std::logic_error("node " + node.id + " has no problem");
+  return made_component<Problem>(node.element.children.front()).object;
+}
+
+MadePolicy load_policy(const InputNode& node, const Problem& problem) {
+  MadePolicy policy;
+  if (const Element* configured = configured_policy(node)) {
+    policy = made_component<Policy>(*configured);
+  } else if (const fs::path path = policy_file(node); !path.empty()) {
+    const PolicyFile file = read_policy_file(path);
+    const bool general = file.spaces.actions.empty();  // saved without a problem
+    if (!general) require_same_axes(file.spaces, problem.spaces(), fmt::format("policy '{}'", node.id));
+    policy = make_policy(file);
+  }
+  if (policy) policy.object->prepare(problem.spaces(), problem.simulator());
+  return policy;
+}
+
+Dataset load_dataset(const InputNode& node, const Spaces& spaces) {
+  return read_dataset(node.folder / kDatasetFile, spaces);
+}
+
+MadeFunction load_value_function(const InputNode& node, const Spaces& spaces) {
+  if (node.folder.empty()) return {};
+  const fs::path trained = node.folder / kValueFile;
+  const fs::path path = fs::exists(trained) ? trained : node.folder / kFunctionFile;
+  if (!fs::exists(path)) {
+    throw ConfigError(fmt::format("node '{}' made no value function: its solver has none", node.id));
+  }
+  const FunctionFile file = read_function_file(path);
+  std::vector<std::string> axes;
+  for (const Axis& axis : spaces.states) axes.push_back("s_" + axis.name);
+  if (file.inputs != axes) {
+    throw ConfigError(fmt::format("the function of node '{}' depends on {}; a value function depends on {}",
+                                  node.id, fmt::join(file.inputs, ", "), fmt::join(axes, ", ")));
+  }
+  return make_function(file);
+}
+
+}  // namespace coppice
