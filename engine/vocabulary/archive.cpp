@@ -2,52 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <cstring>
 #include <stdexcept>
 #include <type_traits>
 
+#include "engine/vocabulary/bytes.h"
+
 namespace coppice {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "archives are written as they lie in memory");
 
 constexpr std::string_view kTypeNames[] = {"float64", "float32", "int64", "int32", "uint8", "text"};
 
 template <class V>
-void append(std::string& out, V value) {
-  char raw[sizeof value];
-  std::memcpy(raw, &value, sizeof value);
-  out.append(raw, sizeof value);
-}
-
-/// Takes pieces off the front of the bytes; never reads beyond their end.
-class Bytes {
- public:
-  explicit Bytes(std::string_view bytes) : rest_(bytes) {}
-
-  std::string_view take(std::uint64_t n, std::string_view what) {
-    if (n > rest_.size()) {
-      throw std::runtime_error(fmt::format("arrays: {} needs {} bytes, {} are left", what, n, rest_.size()));
-    }
-    const std::string_view piece = rest_.substr(0, n);
-    rest_.remove_prefix(n);
-    return piece;
-  }
-  template <class V>
-  V number(std::string_view what) {
-    V value;
-    std::memcpy(&value, take(sizeof value, what).data(), sizeof value);
-    return value;
-  }
-  std::size_t left() const { return rest_.size(); }
-
- private:
-  std::string_view rest_;
-};
-
-template <class V>
-V read_array(Bytes& bytes, std::uint64_t items, std::string_view name) {
+V read_array(ByteReader& bytes, std::uint64_t items, std::string_view name) {
   using Item = typename V::value_type;
   if (items > bytes.left() / sizeof(Item)) {
     throw std::runtime_error(
@@ -60,7 +27,7 @@ V read_array(Bytes& bytes, std::uint64_t items, std::string_view name) {
 }
 
 template <std::size_t I = 0>
-Archive::Array read_typed(std::size_t type, Bytes& bytes, std::uint64_t items, std::string_view name) {
+Archive::Array read_typed(std::size_t type, ByteReader& bytes, std::uint64_t items, std::string_view name) {
   if constexpr (I == std::variant_size_v<Archive::Array>) {
     throw std::runtime_error(fmt::format("arrays: '{}' has the unknown type {}", name, type));
   } else {
@@ -101,14 +68,13 @@ Archive::Scope::~Scope() {
 // number of items (u64) and items. Everything little-endian; names strictly ascending.
 std::string Archive::bytes() const {
   std::string out;
-  append<std::uint64_t>(out, arrays_.size());
+  append_number<std::uint64_t>(out, arrays_.size());
   for (const auto& [name, array] : arrays_) {
-    append(out, static_cast<std::uint32_t>(name.size()));
-    out += name;
-    append(out, static_cast<std::uint8_t>(array.index()));
+    append_text(out, name);
+    append_number(out, static_cast<std::uint8_t>(array.index()));
     std::visit(
         [&out](const auto& items) {
-          append<std::uint64_t>(out, items.size());
+          append_number<std::uint64_t>(out, items.size());
           const std::size_t size = items.size() * sizeof(items[0]);
           if (size > 0) out.append(reinterpret_cast<const char*>(items.data()), size);
         },
@@ -118,15 +84,15 @@ std::string Archive::bytes() const {
 }
 
 Archive Archive::from_bytes(std::string_view raw) {
-  Bytes bytes(raw);
+  ByteReader bytes(raw);
   Archive archive;
   std::string last;
   const auto count = bytes.number<std::uint64_t>("the number of arrays");
   for (std::uint64_t i = 0; i < count; ++i) {
-    std::string name(bytes.take(bytes.number<std::uint32_t>("a name's length"), "a name"));
+    std::string name = bytes.text("an array's name");
     if (i > 0 && name <= last) throw std::runtime_error("arrays: the names are not in order");
-    const std::size_t type = bytes.number<std::uint8_t>("a type");
-    const auto items = bytes.number<std::uint64_t>("a number of items");
+    const std::size_t type = bytes.number<std::uint8_t>("an array's type");
+    const auto items = bytes.number<std::uint64_t>("an array's size");
     archive.arrays_.emplace(name, read_typed(type, bytes, items, name));
     last = std::move(name);
   }
