@@ -18,7 +18,7 @@ namespace coppice::cli {
 class Console;
 
 /// What the shell may offer where an argument's value stands.
-enum class Completes { nothing, config, file, folder, component, interface, node, command };
+enum class Completes { nothing, config, file, folder, component, problem, interface, node, command };
 
 /// A positional argument ("CONFIG") or an option ("--out"), as parsing, help, completion and the manual see
 /// it.
@@ -111,6 +111,7 @@ class Arguments {
     ArgumentInfo info;
     for (const std::string& name : choices) info.value += (info.value.empty() ? "" : "|") + name;
     info.choices = std::move(choices);
+    info.required = !names.starts_with('-');
     return insert(std::move(info), std::move(names), member, std::move(doc));
   }
   Arguments& flag(std::string names, bool T::*member, std::string doc) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/cli/command.h"
+#include "engine/cli/complete.h"
 #include "engine/cli/console.h"
 #include "engine/cli/exit_status.h"
 #include "engine/cli/help.h"
@@ -36,6 +37,12 @@ int serve(const CommandLine& line, Console& console) {
 int guarded(std::vector<std::string> arguments, Console& console) {
   try {
     Catalogue::instance().verify();
+    if (!arguments.empty() &&
+        arguments.front() == "__complete") {  // any words may follow: they are not parsed
+      console.out(complete({arguments.begin() + 1, arguments.end()}));
+      console.flush();
+      return kDone;
+    }
     const int status = serve(CommandLine(std::move(arguments)), console);
     console.flush();
     return status;

@@ -1,0 +1,51 @@
+#include "engine/cli/row_stream.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+namespace coppice::cli {
+namespace {
+
+/// Where the last whole record ends: after the last line end that is not inside quotes.
+std::size_t end_of_records(const std::string& text) {
+  std::size_t end = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '"') quoted = !quoted;
+    if (text[i] == '\n' && !quoted) end = i + 1;
+  }
+  return end;
+}
+
+}  // namespace
+
+bool RowStream::read_more() {
+  char buffer[1 << 16];
+  before_wait_();
+  ssize_t count = 0;
+  do {
+    count = ::read(descriptor_, buffer, sizeof buffer);
+  } while (count < 0 && errno == EINTR);
+  if (count < 0) throw std::runtime_error(std::string("cannot read standard input: ") + std::strerror(errno));
+  pending_.append(buffer, static_cast<std::size_t>(count));
+  return count > 0;
+}
+
+std::optional<std::string> RowStream::next() {
+  std::size_t end = end_of_records(pending_);
+  while (end == 0 && !ended_) {
+    ended_ = !read_more();
+    end = end_of_records(pending_);
+  }
+  if (end == 0) end = pending_.size();
+  if (end == 0) return std::nullopt;
+  std::string records = pending_.substr(0, end);
+  pending_.erase(0, end);
+  return records;
+}
+
+}  // namespace coppice::cli
