@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "engine/graph/artifacts.h"
+#include "engine/graph/nodes/episodes.h"
+
+namespace coppice {
+namespace {
+
+/// A dataset of transitions: episodes of a policy, or single steps from states and actions drawn uniformly
+/// (as for the car on the hill: thesis 2.2.2; Ernst, Geurts and Wehenkel 2005).
+struct CollectNode : Node {
+  using Node::check;
+
+  Reference problem, policy;
+  std::int64_t episodes = 0;
+  std::int64_t samples = 0;
+  std::optional<int> horizon;
+
+  std::vector<std::string> makes() const override { return {"dataset", "timing"}; }
+
+  void check() const {
+    if ((episodes > 0) == (samples > 0)) {
+      throw std::invalid_argument(
+          "give either episodes, with a policy, or samples, a number of uniformly drawn transitions");
+    }
+    if ((episodes > 0) == policy.id.empty()) {
+      throw std::invalid_argument(episodes > 0 ? "episodes need a policy"
+                                               : "samples are drawn uniformly, without a policy");
+    }
+    if (samples > 0 && horizon) throw std::invalid_argument("uniform samples are single steps: no horizon");
+  }
+
+  void check(const NodeContext& context) const override {
+    const auto target = load_problem(context.inputs("problem").front());
+    if (episodes > 0) {
+      load_policy(context.inputs("policy").front(), *target);
+    } else {
+      check_uniform(*target);
+    }
+  }
+
+  void run(NodeContext& context) const override {
+    const auto target = load_problem(context.inputs("problem").front());
+    const Dataset dataset = episodes > 0 ? play(*target, context) : sample(*target, context);
+    context.count("steps", static_cast<std::int64_t>(dataset.rows()));
+    write_dataset(context.folder() / kDatasetFile, dataset);
+  }
+
+  static Parameters<CollectNode> parameters() {
+    using This = CollectNode;
+    return node_parameters<This>()
+        .reference("problem", &This::problem, "problem", "Where to act.")
+        .reference("policy", &This::policy, "policy", "Who acts in the episodes.", false)
+        .add("episodes", &This::episodes, "", "Number of episodes.", at_least(0))
+        .automatic("horizon", &This::horizon, "", "Steps of an episode at most; auto: the problem's.",
+                   at_least(1))
+        .add("samples", &This::samples, "",
+             "Instead of episodes: number of single steps from states and actions drawn uniformly.",
+             at_least(0));
+  }
+
+ private:
+  Dataset play(const Problem& target, NodeContext& context) const {
+    const MadePolicy acting = load_policy(context.inputs("policy").front(), target);
+    const auto count = static_cast<std::size_t>(episodes);
+    DatasetRecorder recorder(target.spaces(), count);
+    Simulation simulation;
+    simulation.policy = acting.object.get();
+    simulation.rollouts = count;
+    simulation.horizon = horizon.value_or(target.horizon());
+    simulation.recorder = &recorder;
+    EpisodeRun(target, simulation, context, false).finish();
+    context.count("episodes", episodes);
+    return recorder.dataset();
+  }
+
+  Dataset sample(const Problem& target, NodeContext& context) const {
+    const auto count = static_cast<std::size_t>(samples);
+    const Spaces& spaces = target.spaces();
+    Matrix states(count, spaces.state_size());
+    std::vector<Action> actions(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Draws draws = context.draws().fork("uniform_sample").scenario(i);
+      for (std::size_t d = 0; d < spaces.state_size(); ++d)
+        states(i, d) = uniform(draws, "state", spaces.states, d);
+      actions[i].id = static_cast<int>(draws.below("action", spaces.actions.size()));
+      const Space& axes = spaces.actions[static_cast<std::size_t>(actions[i].id)].axes;
+      actions[i].values.resize(axes.size());
+      for (std::size_t d = 0; d < axes.size(); ++d)
+        actions[i].values[d] = uniform(draws, "parameter", axes, d);
+    }
+    DatasetRecorder recorder(spaces, count);
+    Simulation simulation;
+    simulation.rollouts = count;
+    simulation.horizon = 1;
+    simulation.starts = &states;
+    simulation.first_actions = actions;
+    simulation.recorder = &recorder;
+    target.simulator()->simulate(simulation, context.draws(), context.parallel());
+    return recorder.dataset();
+  }
+
+  static double uniform(const Draws& draws, Purpose purpose, const Space& axes, std::size_t d) {
+    return draws.uniform(purpose, axes[d].low, axes[d].high, static_cast<std::uint32_t>(d));
+  }
+
+  static void check_uniform(const Problem& target) {
+    if (target.simulator() == nullptr) {
+      throw std::invalid_argument("the problem only offers episodes: it cannot be set to uniform samples");
+    }
+    const auto bounded = [](const Space& axes, std::string_view what) {
+      for (const Axis& axis : axes) {
+        if (std::isfinite(axis.low) && std::isfinite(axis.high)) continue;
+        throw std::invalid_argument(
+            fmt::format("'{}' of {} has no limits: uniform samples need them", axis.name, what));
+      }
+    };
+    bounded(target.spaces().states, "the state");
+    for (const ActionBox& box : target.spaces().actions) bounded(box.axes, "action '" + box.name + "'");
+  }
+};
+
+const Component<Node, CollectNode> kComponent(
+    "collect", "Collect transitions: episodes of a policy, or uniform samples.", "no publication");
+
+}  // namespace
+}  // namespace coppice

@@ -1,0 +1,39 @@
+#include "engine/data/table_file.h"
+#include "engine/graph/artifacts.h"
+
+namespace coppice {
+namespace {
+
+/// Transitions, or with no problem any table, read from a CSV file.
+struct DatasetNode : Node {
+  FilePath file;
+  Reference problem;
+
+  std::vector<std::string> makes() const override { return {"dataset", "timing"}; }
+  bool random() const override { return false; }
+
+  void run(NodeContext& context) const override {
+    const std::filesystem::path target = context.folder() / kDatasetFile;
+    if (problem.id.empty()) {
+      write_table(target, read_table(file.path));
+    } else {
+      const auto source = load_problem(context.inputs("problem").front());
+      write_dataset(target, read_dataset(file.path, source->spaces()));
+    }
+  }
+
+  static Parameters<DatasetNode> parameters() {
+    return node_parameters<DatasetNode>()
+        .require("file", &DatasetNode::file, "", "The CSV file.")
+        .reference(
+            "problem", &DatasetNode::problem, "problem",
+            "Problem that the transitions are of: its axes name the columns. None: any table, for fit.",
+            false);
+  }
+};
+
+const Component<Node, DatasetNode> kComponent("dataset", "Read transitions, or any table, from a CSV file.",
+                                              "no publication");
+
+}  // namespace
+}  // namespace coppice
