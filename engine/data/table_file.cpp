@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 #include "engine/data/csv.h"
-#include "engine/data/files.h"
+#include "engine/graph/file_system.h"
 #include "registry/source.h"
 #include "registry/suggest.h"
 #include "registry/text.h"
@@ -96,11 +96,10 @@ Type type_of(const std::string& name) {
 
 /// The columns of the header, as the schema file describes them.
 std::vector<ColumnInfo> described_columns(const std::filesystem::path& schema, const CsvReader& reader) {
-  const std::string text = read_file(schema);
   std::vector<ColumnInfo> known;
   std::vector<std::string> names;
   try {
-    const nlohmann::json root = nlohmann::json::parse(text);
+    const nlohmann::json root = nlohmann::json::parse(read_file(schema));
     for (const nlohmann::json& column : root.at("columns")) {
       known.push_back({column.at("name").get<std::string>(), type_of(column.at("type").get<std::string>()),
                        column.at("unit").get<std::string>(), column.at("doc").get<std::string>()});

@@ -114,7 +114,7 @@ void sync_file(const std::filesystem::path& file) {
 }
 
 void sync_folder(const std::filesystem::path& folder) {
-  OpenFile(folder, O_RDONLY | O_DIRECTORY).sync();
+  OpenFile(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY).sync();
 }
 
 void make_folder(const std::filesystem::path& folder) {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "engine/data/files.h"
 #include "engine/graph/artifacts.h"
+#include "engine/graph/file_system.h"
 #include "engine/vocabulary/bytes.h"
 
 namespace coppice {
@@ -103,11 +103,16 @@ void write_policy_file(const std::filesystem::path& file, const PolicyFile& cont
   append_number(bytes, kFormatVersion);
   append_number<std::uint64_t>(bytes, XXH3_64bits(checked.data(), checked.size()));
   bytes += checked;
-  write_file_atomically(file, bytes);
+  write_file(file, bytes, true);
 }
 
 PolicyFile read_policy_file(const std::filesystem::path& file) {
-  const std::string all = read_file(file);
+  std::string all;
+  try {
+    all = read_file(file);
+  } catch (const std::runtime_error& unreadable) {
+    throw ConfigError(unreadable.what());
+  }
   if (!std::string_view(all).starts_with(kMagic)) fail(file, "this is not a policy file");
   ByteReader bytes(std::string_view(all).substr(kMagic.size()));
   try {
