@@ -81,32 +81,15 @@ bool stamp_file(const std::string& path, FileStamp& stamp) {
   return true;
 }
 
-std::string read_file(const std::filesystem::path& file) {
-  const OpenFile input(file, O_RDONLY);
-  std::string bytes;
-  std::size_t used = 0;
-  for (;;) {
-    bytes.resize(used + std::max<std::size_t>(4096, used));
-    const std::size_t count = input.read(bytes.data() + used, bytes.size() - used);
-    used += count;
-    if (count == 0) break;
-  }
-  bytes.resize(used);
-  return bytes;
-}
-
-void write_file(const std::filesystem::path& file, std::string_view bytes, bool durable) {
+void replace_file(const std::filesystem::path& file, std::string_view bytes) {
   const std::filesystem::path temporary = temporary_beside(file);
   try {
-    const OpenFile output(temporary, O_WRONLY | O_CREAT | O_TRUNC);
-    output.write(bytes);
-    if (durable) output.sync();
+    OpenFile(temporary, O_WRONLY | O_CREAT | O_TRUNC).write(bytes);
   } catch (...) {
     ::unlink(temporary.c_str());
     throw;
   }
   rename_file(temporary, file);
-  if (durable) sync_folder(file.parent_path());
 }
 
 void sync_file(const std::filesystem::path& file) {
@@ -151,11 +134,10 @@ void remove_all(const std::filesystem::path& path) {
 }
 
 std::string safe_name(std::string_view text) {
-  constexpr std::size_t kLongest = 160;
   std::string name;
   for (const char c : text) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       std::string_view("_-+.=,").find(c) != std::string_view::npos;
+                       std::string_view("_-+.").find(c) != std::string_view::npos;
     const bool hidden = c == '.' && name.empty();
     if (plain && !hidden) {
       name += c;
@@ -163,8 +145,13 @@ std::string safe_name(std::string_view text) {
       name += fmt::format("%{:02X}", static_cast<unsigned char>(c));
     }
   }
-  if (name.size() > kLongest) name = name.substr(0, kLongest - 33) + "~" + content_hash(text);
   return name;
+}
+
+std::string short_name(std::string name) {
+  constexpr std::size_t kLongest = 160;
+  if (name.size() <= kLongest) return name;
+  return name.substr(0, kLongest - 33) + "~" + content_hash(name);
 }
 
 }  // namespace coppice

@@ -54,8 +54,10 @@ void link_file(const std::filesystem::path& from, const std::filesystem::path& t
 /// Removes a file or a folder with its content; nothing happens when there is none.
 void remove_all(const std::filesystem::path& path);
 
-/// A name for a file or folder: letters, digits and "_-+.=," stay, other bytes become %XX; different texts
-/// get different names. Long texts are cut and end in a hash.
+/// A name for a file or folder: letters, digits and "_-+." stay, other bytes and a leading point become %XX;
+/// different texts get different names.
 std::string safe_name(std::string_view text);
+/// The name, or, where it is longer than file systems like, its start and a hash of it.
+std::string short_name(std::string name);
 
 }  // namespace coppice

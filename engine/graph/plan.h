@@ -16,6 +16,7 @@ namespace coppice {
 struct PlannedInput {
   std::string parameter;
   std::string artifact;
+  bool fans_out = false;  ///< the reader is one of several, one for each node that the user named
   std::vector<std::size_t> nodes;
 };
 
@@ -24,9 +25,11 @@ struct PlannedInput {
 struct PlannedNode {
   std::string id;
   std::string kind;
-  Point point;
+  std::vector<std::string> sweeps;
+  Point point;       ///< values of all columns of `sweeps`
   std::string item;  ///< id of the node it fans out to ("rfpi" of an evaluation's policies); else empty
   std::optional<int> replicate;  ///< from 0
+  int replicates = 0;            ///< how many there are at this point; 0 when it has none
   std::string name;              ///< unique, for people: "scores variant=HA rfpi r003"
   std::string folder;            ///< unique, below the run folder: "nodes/scores/variant=HA/rfpi/r003"
   std::string key;               ///< 32 hexadecimal digits; see key.h
@@ -39,7 +42,8 @@ struct PlannedNode {
   std::vector<PlannedInput> inputs;         ///< in the order of the parameters
   std::vector<PointValue> labels;    ///< columns that name it in tables: sweep columns, problem, policy
   std::vector<std::string> streams;  ///< streams of draws it depends on, its own first (unless a definition)
-  std::string parameters_text;       ///< part of the key text that comes from `resolved`
+  std::string parameters_text;       ///< part of the key text that comes from `resolved`; see key.h
+  std::string family;                ///< hash of that part: equal for all replicates
 };
 
 /// What a config asks for, before looking at any result. Everything that plan, why and run say comes from
@@ -51,8 +55,6 @@ struct Plan {
 
   /// What the key of a node is the hash of: lines "name = value".
   std::string key_text(std::size_t node) const;
-  /// The root seed's draws of a node's label and replicate.
-  Draws draws(std::size_t node) const;
   /// Indices of the nodes with this id, or with this name; empty when there is none.
   std::vector<std::size_t> find(std::string_view id_or_name) const;
   std::vector<std::string> ids() const;  ///< in document order

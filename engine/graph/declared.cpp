@@ -1,0 +1,115 @@
+#include "engine/graph/declared.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string_view>
+
+#include "registry/suggest.h"
+#include "registry/text.h"
+
+namespace coppice {
+namespace {
+
+bool is_name(std::string_view text) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  const auto other = [](char c) { return (c >= '0' && c <= '9') || c == '-'; };
+  return !text.empty() && letter(text.front()) &&
+         std::all_of(text.begin(), text.end(), [&](char c) { return letter(c) || other(c); });
+}
+
+/// Reads the elements of an experiment one after the other into declared nodes.
+class ElementReader {
+ public:
+  ElementReader(Declarations& declarations, Diagnostics& diagnostics)
+      : declarations_(declarations), diagnostics_(diagnostics), kinds_(Catalogue::instance().names("node")) {}
+
+  void read(const NodeElement& given) {
+    const Element& element = given.element;
+    const ComponentInfo* info = Catalogue::instance().find(Node::kInterface, element.name);
+    if (info == nullptr) {
+      diagnostics_.error(element.place, fmt::format("there is no node kind <{}>", element.name),
+                         suggestion(element.name, kinds_));
+      return;
+    }
+    DeclaredNode* node = node_of(given, *info);
+    if (node == nullptr) return;
+    DeclaredElement declared;
+    declared.written = &element;
+    declared.sweeps = given.sweeps;
+    declared.point = given.point;
+    Sub<Node> made = make<Node>(element, diagnostics_);
+    declared.node = std::move(made.object);
+    declared.sound = declared.node != nullptr;
+    std::erase_if(made.resolved.attributes,
+                  [](const Attribute& a) { return a.name == "over" || a.name == "at"; });
+    declared.resolved = std::make_shared<const Element>(std::move(made.resolved));
+    if (declared.sound && declared.node->definition() && declared.node->replicates) {
+      diagnostics_.error(place_of(element.find("replicates"), element),
+                         fmt::format("<{}> has no replicates: it computes nothing", element.name));
+      declared.sound = false;
+    }
+    node->elements.push_back(std::move(declared));
+  }
+
+ private:
+  /// The declared node that the element belongs to; null after a mistake in its id.
+  DeclaredNode* node_of(const NodeElement& given, const ComponentInfo& info) {
+    const Element& element = given.element;
+    const Attribute* id = element.find("id");
+    const std::string name(trim(id == nullptr ? std::string_view() : std::string_view(id->value)));
+    if (id != nullptr && !is_name(name)) {
+      diagnostics_.error(place_of(id, element), fmt::format("id=\"{}\" is no name", id->value),
+                         "a name has letters, digits, '_' and '-', and starts with a letter or '_'");
+      return nullptr;
+    }
+    if (id == nullptr) {  // reading the element reports it
+      make<Node>(element, diagnostics_);
+      return nullptr;
+    }
+    const auto [known, is_new] = by_id_.emplace(name, declarations_.nodes.size());
+    if (is_new) declarations_.nodes.push_back({name, element.name, &info, {}});
+    DeclaredNode& node = declarations_.nodes[known->second];
+    if (is_new || is_another_point(node, given)) return &node;
+    const Place& first = node.elements.empty() ? element.place : node.elements.front().written->place;
+    diagnostics_.error(place_of(id, element), fmt::format("the id '{}' is already used", name), {},
+                       first.file ? std::vector<std::string>{fmt::format("first used at {}:{}",
+                                                                         first.file->path, first.line)}
+                                  : std::vector<std::string>{});
+    return nullptr;
+  }
+
+  /// True when the element is a further sweep point of the node (in a flat file each has a place of its own).
+  bool is_another_point(const DeclaredNode& node, const NodeElement& given) {
+    if (node.elements.empty()) return true;
+    const DeclaredElement& first = node.elements.front();
+    if (node.kind != given.element.name || first.sweeps != given.sweeps || given.sweeps.empty()) return false;
+    std::set<Point>& points = points_[node.id];
+    if (points.empty()) points.insert(first.point);
+    return points.insert(given.point).second;
+  }
+
+  Declarations& declarations_;
+  Diagnostics& diagnostics_;
+  std::vector<std::string> kinds_;
+  std::map<std::string, std::size_t, std::less<>> by_id_;
+  std::map<std::string, std::set<Point>> points_;
+};
+
+}  // namespace
+
+const Place& place_of(const Attribute* attribute, const Element& element) {
+  return attribute != nullptr && attribute->value_place.file ? attribute->value_place : element.place;
+}
+
+Declarations declare(const ExperimentConfig& experiment, Diagnostics& diagnostics) {
+  Declarations declarations;
+  ElementReader reader(declarations, diagnostics);
+  for (const NodeElement& given : experiment.nodes) reader.read(given);
+  resolve_references(declarations, diagnostics);
+  return declarations;
+}
+
+}  // namespace coppice
