@@ -37,8 +37,9 @@ std::string text(const Plan& plan, const Statuses& statuses, int threads) {
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
     if (!statuses[i].runs) continue;
     const std::optional<double>& predicted = statuses[i].predicted_s;
-    rows.push_back(
-        {plan.nodes[i].name, predicted ? "~" + duration_text(*predicted) : "", to_text(statuses[i])});
+    rows.push_back({plan.nodes[i].name,
+                    predicted ? fmt::format("~{}", duration_text(*predicted)) : std::string(),
+                    to_text(statuses[i])});
   }
   const Counts counts = count(plan, statuses);
   std::string head =

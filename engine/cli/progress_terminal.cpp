@@ -72,7 +72,9 @@ class TerminalProgress : public RunListener {
     const std::size_t width = static_cast<std::size_t>(console_.width()) - 1;
     std::string text;
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      text += (i == 0 ? "" : "\n") + shortened(lines[i], width) + "\x1b[K";
+      if (i > 0) text += '\n';
+      text += shortened(lines[i], width);
+      text += "\x1b[K";
     }
     if (text == shown_) return;
     console_.say(to_first_line() + text + "\x1b[J");
