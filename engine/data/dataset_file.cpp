@@ -6,7 +6,7 @@
 
 #include "engine/data/csv.h"
 #include "engine/data/table_file.h"
-#include "engine/graph/file_system.h"
+#include "engine/data/file_system.h"
 #include "engine/vocabulary/dataset.h"
 #include "registry/source.h"
 #include "registry/suggest.h"

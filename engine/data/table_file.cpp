@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 #include "engine/data/csv.h"
-#include "engine/graph/file_system.h"
+#include "engine/data/file_system.h"
 #include "registry/source.h"
 #include "registry/suggest.h"
 #include "registry/text.h"

@@ -1,23 +1,15 @@
 #include "engine/graph/key.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <stdexcept>
 
-#include "engine/graph/file_system.h"
 #include "engine/graph/node.h"
 
 namespace coppice {
 namespace {
-
-std::string hexadecimal(const XXH128_hash_t& hash) {
-  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
-}
 
 /// Parameters that every node has and that do not change what it computes; seed_label has a line of its own.
 bool is_node_option(std::string_view name) {
@@ -48,22 +40,6 @@ const ComponentInfo& info_of(std::string_view interface, const Element& resolved
 }
 
 }  // namespace
-
-std::string content_hash(std::string_view bytes) {
-  return hexadecimal(XXH3_128bits(bytes.data(), bytes.size()));
-}
-
-std::string file_hash(const std::filesystem::path& file) {
-  const OpenFile input(file, O_RDONLY);
-  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
-                                                                              XXH3_freeState);
-  XXH3_128bits_reset(state.get());
-  std::vector<char> buffer(1 << 18);
-  while (const std::size_t count = input.read(buffer.data(), buffer.size())) {
-    XXH3_128bits_update(state.get(), buffer.data(), count);
-  }
-  return hexadecimal(XXH3_128bits_digest(state.get()));
-}
 
 const std::string& FileHashes::of(const std::string& path) {
   auto found = hashes_.find(path);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/config/experiment.h"
+#include "engine/data/hash.h"
 #include "registry/component.h"
 
 namespace coppice {
@@ -18,11 +19,6 @@ namespace coppice {
 
 /// Raised when the meaning of the key text changes: every result is then computed anew.
 inline constexpr int kKeyFormat = 1;
-
-/// XXH3-128 as 32 hexadecimal digits.
-std::string content_hash(std::string_view bytes);
-/// The same of a file's content. Throws std::runtime_error with the file and the system's reason.
-std::string file_hash(const std::filesystem::path& file);
 
 /// Content hashes of the files that parameters name; each is read once.
 class FileHashes {

@@ -81,7 +81,7 @@ class KeyWriter {
   std::string text(const PlannedNode& node) {
     std::string text;
     add_line(text, "key_format", std::to_string(kKeyFormat));
-    if (!node.definition) {
+    if (!node.definition && node.node->random()) {
       const std::string& label = node.node->seed_label;
       add_line(text, "seed", std::to_string(plan_.experiment.seed));
       add_line(text, "seed_label", label.empty() ? node.kind : label);

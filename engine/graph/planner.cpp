@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "engine/graph/file_system.h"
+#include "engine/data/file_system.h"
 
 namespace coppice {
 
@@ -78,7 +78,7 @@ void label_node(PlannedNode& node, const Plan& plan) {
 
 /// Its own stream of draws, then those of what it reads.
 void collect_streams(PlannedNode& node, const Plan& plan) {
-  if (!node.definition) {
+  if (!node.definition && node.node->random()) {
     const std::string& label = node.node->seed_label.empty() ? node.kind : node.node->seed_label;
     node.streams.push_back(fmt::format("{} {}", label, node.replicate.value_or(0)));
   }

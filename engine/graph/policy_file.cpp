@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "engine/graph/artifacts.h"
-#include "engine/graph/file_system.h"
+#include "engine/data/file_system.h"
 #include "engine/vocabulary/bytes.h"
 
 namespace coppice {

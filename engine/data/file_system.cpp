@@ -1,4 +1,4 @@
-#include "engine/graph/file_system.h"
+#include "engine/data/file_system.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "engine/graph/key.h"
+#include "engine/data/hash.h"
 
 namespace coppice {
 namespace {
@@ -81,15 +81,32 @@ bool stamp_file(const std::string& path, FileStamp& stamp) {
   return true;
 }
 
-void replace_file(const std::filesystem::path& file, std::string_view bytes) {
+std::string read_file(const std::filesystem::path& file) {
+  const OpenFile input(file, O_RDONLY);
+  std::string bytes;
+  std::size_t used = 0;
+  for (;;) {
+    bytes.resize(used + std::max<std::size_t>(4096, used));
+    const std::size_t count = input.read(bytes.data() + used, bytes.size() - used);
+    used += count;
+    if (count == 0) break;
+  }
+  bytes.resize(used);
+  return bytes;
+}
+
+void write_file(const std::filesystem::path& file, std::string_view bytes, bool durable) {
   const std::filesystem::path temporary = temporary_beside(file);
   try {
-    OpenFile(temporary, O_WRONLY | O_CREAT | O_TRUNC).write(bytes);
+    const OpenFile output(temporary, O_WRONLY | O_CREAT | O_TRUNC);
+    output.write(bytes);
+    if (durable) output.sync();
   } catch (...) {
     ::unlink(temporary.c_str());
     throw;
   }
   rename_file(temporary, file);
+  if (durable) sync_folder(file.parent_path());
 }
 
 void sync_file(const std::filesystem::path& file) {
