@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ struct Language {
   std::string root_interface;  ///< the components that stand in it
   std::vector<LanguageElement> elements;
   std::vector<LanguageAttribute> common;  ///< attributes that every element may have ("if")
+  std::map<std::string, std::string, std::less<>>
+      interfaces;  ///< what each kind of component is, a sentence or two
 };
 
 }  // namespace coppice

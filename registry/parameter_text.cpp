@@ -80,6 +80,16 @@ std::string parameter_text(const ParameterInfo& info) {
   return info.default_text.empty() ? text : text + ", default " + default_text(info);
 }
 
+std::string slot_text(const SlotInfo& slot) {
+  std::string text = slot.doc + " (" + (slot.many ? "any number of: " : "") + with_article(slot.interface);
+  if (!slot.default_component.empty()) {
+    text += ", default " + slot.default_component;
+  } else if (slot.required) {
+    text += ", required";
+  }
+  return text + ")";
+}
+
 std::string with_article(std::string_view noun) {
   const bool vowel = !noun.empty() && std::string_view("aeiou").find(noun.front()) != std::string_view::npos;
   return fmt::format("{} {}", vowel ? "an" : "a", noun);

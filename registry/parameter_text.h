@@ -21,6 +21,9 @@ std::string default_text(const ParameterInfo& info);
 /// All in one: "number [s] > 0 s, default 0.05 s", "integer >= 2, required".
 std::string parameter_text(const ParameterInfo& info);
 
+/// "Learns the value. (an approximator, default extra_trees)"
+std::string slot_text(const SlotInfo& slot);
+
 /// "an approximator", "a solver".
 std::string with_article(std::string_view noun);
 

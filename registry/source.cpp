@@ -94,42 +94,12 @@ class Builder {
   std::size_t next_ = 0;
 };
 
-void append_escaped(std::string& text, std::string_view value) {
-  for (const char c : value) {
-    switch (c) {
-      case '&':
-        text += "&amp;";
-        break;
-      case '<':
-        text += "&lt;";
-        break;
-      case '>':
-        text += "&gt;";
-        break;
-      case '"':
-        text += "&quot;";
-        break;
-      case '\t':
-        text += "&#9;";
-        break;
-      case '\n':
-        text += "&#10;";
-        break;
-      case '\r':
-        text += "&#13;";
-        break;
-      default:
-        text += c;
-    }
-  }
-}
-
 void append_xml(std::string& text, const Element& element, int indent) {
   text.append(static_cast<std::size_t>(indent), ' ');
   text += "<" + element.name;
   for (const Attribute& attribute : element.attributes) {
     text += " " + attribute.name + "=\"";
-    append_escaped(text, attribute.value);
+    text += escape_xml(attribute.value);
     text += '"';
   }
   if (element.children.empty()) {
@@ -201,6 +171,38 @@ Element parse_xml(const std::shared_ptr<const SourceFile>& source) {
     return attribute.name == "xmlns:xsi" || attribute.name == "xsi:noNamespaceSchemaLocation";
   });
   return root;
+}
+
+std::string escape_xml(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      case '\t':
+        escaped += "&#9;";
+        break;
+      case '\n':
+        escaped += "&#10;";
+        break;
+      case '\r':
+        escaped += "&#13;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
 }
 
 std::string to_xml(const Element& element, int indent) {

@@ -46,6 +46,9 @@ std::shared_ptr<const SourceFile> read_source(const std::string& path,
 /// after the root, entities other than the five, DOCTYPE; also text between elements. Throws ConfigError.
 Element parse_xml(const std::shared_ptr<const SourceFile>& source);
 
+/// The text as it is written inside XML, in quotes or between tags.
+std::string escape_xml(std::string_view text);
+
 /// The element as XML text, attributes in order, two spaces of indent. parse_xml reads it back to the same
 /// tree.
 std::string to_xml(const Element& element, int indent = 0);

@@ -214,6 +214,14 @@ std::optional<Quantity> parse_quantity(std::string_view text) {
   return quantity;
 }
 
+std::vector<NamedUnit> named_units() {
+  std::vector<NamedUnit> units;
+  for (const Unit& unit : kUnits) {
+    if (unit.name != "1") units.push_back({unit.name, *parse_unit(unit.name)});
+  }
+  return units;
+}
+
 std::string unit_text(const Dimension& dimension) {
   static constexpr std::array<std::string_view, 6> kNames = {"m", "kg", "s", "A", "rad", "byte"};
   static constexpr std::array<Base, 6> kOrder = {kKilogram, kMetre, kRadian, kByte, kAmpere, kSecond};

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace coppice {
 
@@ -30,6 +31,14 @@ std::string unit_text(const Dimension& dimension);
 
 /// What a dimension is, for messages: "an angle (rad)", "a plain number", "a quantity in m^5/s".
 std::string dimension_text(const Dimension& dimension);
+
+/// A unit that has a name of its own, with its value in SI.
+struct NamedUnit {
+  std::string_view name;
+  Quantity value;
+};
+/// All of them, for the schema and the manual; products, quotients and powers of them are units too.
+std::vector<NamedUnit> named_units();
 
 /// The shortest text that reads back to the same double, independent of the locale.
 std::string number_text(double value);
