@@ -39,11 +39,10 @@ struct InputNode {
   Point point;
   std::optional<int> replicate;
   Element element;               ///< resolved
-  std::filesystem::path folder;  ///< its files; empty for definitions (problem, policy) and while checking
+  std::filesystem::path folder;  ///< its files and timing.csv; empty for definitions and while checking
   std::string key;
   std::vector<PointValue> labels;    ///< columns that name it in tables: sweep columns, "problem", "policy"
   std::vector<std::string> streams;  ///< streams of draws it depends on ("collect 0"), its own first
-  std::filesystem::path timing;      ///< its timing.csv; empty for definitions and while checking
 };
 
 /// What a node sees while it is checked and while it runs.
