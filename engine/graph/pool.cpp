@@ -78,8 +78,8 @@ void Pool::Running::for_each(std::size_t n, const std::function<void(std::size_t
     for (std::size_t i = 0; i < n; ++i) work(i);
     return;
   }
-  // Chunks that are small against the whole even out items of different length.
-  const std::size_t chunk = std::max<std::size_t>(1, n / (32 * width_));
+  // Chunks that are small against the whole even out items of different length; 256 hide the counter's cost.
+  const std::size_t chunk = std::clamp<std::size_t>(n / (32 * width_), 1, 256);
   Loop loop{*this, work, n, chunk, Loop::current};
   pool_.share(loop);
   if (loop.error) std::rethrow_exception(loop.error);

@@ -184,17 +184,24 @@ TEST(Pool, ATaskOfSeveralCoresHasThemToItself) {
 
 TEST(Pool, AnIdleThreadPrefersATaskToALoop) {
   Pool pool(2);
-  std::atomic<bool> second{false};
+  std::atomic<int> helped{0};
+  std::atomic<bool> other{false};
   bool seen = false;
   run_one(pool, [&](Parallel& parallel) {
-    parallel.for_each(1000, [&](std::size_t i) {
-      if (i == 0) {
-        pool.submit({.work = [&](Parallel&) { second = true; }});
-        seen = eventually([&] { return second.load(); });  // although 999 items are left
+    const std::thread::id owner = std::this_thread::get_id();
+    parallel.for_each(100'000, [&](std::size_t) {
+      if (other) return;
+      if (std::this_thread::get_id() != owner) {
+        ++helped;
+        std::this_thread::sleep_for(100us);  // all of them would take ten seconds
+        return;
       }
+      ASSERT_TRUE(eventually([&] { return helped > 0; }));
+      pool.submit({.work = [&](Parallel&) { other = true; }});
+      seen = eventually([&] { return other.load(); });
     });
   });
-  EXPECT_TRUE(seen);
+  EXPECT_TRUE(seen) << "the helper did not leave the loop";
 }
 
 TEST(Pool, NestedLoopsOfAnyDepthEnd) {
