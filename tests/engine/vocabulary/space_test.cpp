@@ -60,10 +60,13 @@ TEST(Clamp, MakesANaNTheCentre) {
 }
 
 TEST(Clamp, RefusesActionsThatAreNone) {
-  EXPECT_THROW(clamp({2, {}}, kActions), std::invalid_argument);
-  EXPECT_THROW(clamp({-1, {}}, kActions), std::invalid_argument);
-  EXPECT_THROW(clamp({0, {1.0}}, kActions), std::invalid_argument);
-  EXPECT_NO_THROW(clamp({1, {}}, kActions));
+  Action action;  // without parameters
+  for (int id : {-1, 0, 2}) {
+    action.id = id;
+    EXPECT_THROW(clamp(action, kActions), std::invalid_argument) << id;
+  }
+  action.id = 1;
+  EXPECT_NO_THROW(clamp(action, kActions));
 }
 
 TEST(Spaces, WidestActionHasTheMostAxes) {
