@@ -1,0 +1,165 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "engine/data/csv.h"
+#include "engine/data/table_file.h"
+#include "engine/graph/artifacts.h"
+#include "engine/statistics/estimates.h"
+#include "registry/suggest.h"
+
+namespace coppice {
+namespace {
+
+/// The named columns of a dataset: one row of x and y for each of its rows.
+struct Samples {
+  Matrix x, y;
+};
+
+/// Throws ConfigError with file, line and column for a cell that is no number.
+Samples read_samples(const std::filesystem::path& file, const std::vector<std::string>& inputs,
+                     const std::string& output) {
+  CsvReader reader(read_source(file.string()));
+  std::vector<std::string> names = inputs;
+  names.push_back(output);
+  std::vector<std::size_t> fields;
+  for (const std::string& name : names) {
+    const std::optional<std::size_t> field = reader.column(name);
+    if (!field) {
+      throw ConfigError({Diagnostic{reader.header_place(0),
+                                    fmt::format("there is no column '{}'", name),
+                                    suggestion(name, reader.header()),
+                                    {}}});
+    }
+    fields.push_back(*field);
+  }
+  std::vector<double> values;  // row after row
+  while (reader.next()) {
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      const std::optional<double> value = parse_number(reader[fields[i]]);
+      if (!value) {
+        throw ConfigError({Diagnostic{reader.place(fields[i]),
+                                      fmt::format("'{}' is no number, which fitting '{}' needs in every row",
+                                                  reader[fields[i]], names[i]),
+                                      {},
+                                      {}}});
+      }
+      values.push_back(*value);
+    }
+  }
+  const std::size_t rows = values.size() / fields.size();
+  if (rows == 0) throw ConfigError(fmt::format("{}: there is nothing to fit: no rows", file.string()));
+  Samples samples{Matrix(rows, inputs.size()), Matrix(rows, 1)};
+  for (std::size_t i = 0; i < rows; ++i) {
+    const std::span<const double> row(values.data() + i * fields.size(), fields.size());
+    samples.x.set_row(i, row.first(inputs.size()));
+    samples.y(i, 0) = row.back();
+  }
+  return samples;
+}
+
+/// One row of scores.csv: how well the function predicts a set.
+std::vector<Cell> score(std::string name, const Function& function, const Samples& samples) {
+  Matrix predicted(samples.y.rows(), 1);
+  function.predict_batch(samples.x, predicted);
+  const double center = mean(samples.y.column(0));
+  double residual = 0, total = 0;
+  for (std::size_t i = 0; i < predicted.rows(); ++i) {
+    const double error = predicted(i, 0) - samples.y(i, 0);
+    residual += error * error;
+    total += (samples.y(i, 0) - center) * (samples.y(i, 0) - center);
+  }
+  const auto rows = static_cast<double>(predicted.rows());
+  return {std::move(name), static_cast<std::int64_t>(predicted.rows()), std::sqrt(residual / rows),
+          total > 0 ? Cell(1 - residual / total) : Cell()};
+}
+
+/// Supervised learning: a function from some columns of a dataset to another.
+struct FitNode : Node {
+  using Node::check;
+
+  Reference samples, test;
+  std::vector<std::string> inputs;
+  std::string output;
+  Sub<Approximator> approximator;
+
+  std::vector<std::string> makes() const override { return {"function", "scores", "timing"}; }
+  std::vector<std::string> labelled_tables() const override { return {"scores.csv"}; }
+
+  void check() const {
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      const bool again = std::find(inputs.begin(), inputs.begin() + static_cast<std::ptrdiff_t>(i),
+                                   inputs[i]) != inputs.begin() + static_cast<std::ptrdiff_t>(i);
+      if (again) throw std::invalid_argument(fmt::format("the input '{}' stands twice", inputs[i]));
+      if (inputs[i] == output) throw std::invalid_argument(fmt::format("'{}' is input and output", output));
+    }
+  }
+
+  /// A test on what was trained on measures nothing.
+  void check(const NodeContext& context) const override {
+    if (test.id.empty()) return;
+    const InputNode& train = context.inputs("samples").front();
+    const InputNode& judge = context.inputs("test").front();
+    const bool same_draws =
+        !train.streams.empty() && !judge.streams.empty() && train.streams.front() == judge.streams.front();
+    if (same_draws) {
+      throw std::invalid_argument(fmt::format(
+          "samples '{}' and test '{}' come from the same draws ({}): give '{}' a seed_label of its own",
+          train.id, judge.id, judge.streams.front(), judge.id));
+    }
+    if (train.key == judge.key) {
+      throw std::invalid_argument(
+          fmt::format("samples '{}' and test '{}' are the same data", train.id, judge.id));
+    }
+  }
+
+  void run(NodeContext& context) const override {
+    const Samples training = read_samples(dataset(context, "samples"), inputs, output);
+    const MadeFunction function =
+        approximator->fit({training.x, training.y, {}}, context.draws().fork("fit"), context.parallel());
+    FunctionFile file{.writer = {},
+                      .provenance = context.key(),
+                      .inputs = inputs,
+                      .output = output,
+                      .component = function.resolved,
+                      .arrays = {}};
+    function->save(file.arrays);
+    write_function_file(context.folder() / kFunctionFile, file);
+
+    using Type = ColumnInfo::Type;
+    Table scores;
+    scores.columns = {{"set", Type::text, "", "train: the samples fitted to; test: samples never seen."},
+                      {"samples", Type::integer, "", "Number of samples."},
+                      {"rmse", Type::number, "", "Root of the mean squared error, in the output's unit."},
+                      {"r2", Type::number, "", "Share of the output's variance that is explained."}};
+    scores.rows.push_back(score("train", *function, training));
+    if (!test.id.empty()) {
+      scores.rows.push_back(score("test", *function, read_samples(dataset(context, "test"), inputs, output)));
+    }
+    write_table(context.folder() / "scores.csv", scores);
+    context.count("samples", static_cast<std::int64_t>(training.x.rows()));
+  }
+
+  static Parameters<FitNode> parameters() {
+    using This = FitNode;
+    return node_parameters<This>()
+        .reference("samples", &This::samples, "dataset", "Dataset to fit to.")
+        .reference("test", &This::test, "dataset", "Dataset to score on, drawn independently of the samples.",
+                   false)
+        .require("inputs", &This::inputs, "", "Columns that the function depends on.")
+        .require("output", &This::output, "", "Column that it predicts.")
+        .direct(&This::approximator, "What is fitted.");
+  }
+
+ private:
+  static std::filesystem::path dataset(const NodeContext& context, std::string_view parameter) {
+    return context.inputs(parameter).front().folder / kDatasetFile;
+  }
+};
+
+const Component<Node, FitNode> kComponent("fit", "Fit a function to the columns of a dataset, and score it.",
+                                          "no publication");
+
+}  // namespace
+}  // namespace coppice

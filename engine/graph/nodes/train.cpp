@@ -1,0 +1,165 @@
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "engine/data/table_file.h"
+#include "engine/graph/artifacts.h"
+#include "engine/graph/nodes/episodes.h"
+#include "engine/graph/nodes/progress_table.h"
+#include "engine/vocabulary/solver.h"
+
+namespace coppice {
+namespace {
+
+/// A training and the rows of its progress, saved and resumed together.
+class Learning {
+ public:
+  Learning(const Solver& solver, const TrainingInputs& inputs, NodeContext& context)
+      : context_(context), training_(solver.start(inputs)) {
+    std::optional<Archive> saved = context.checkpoint();
+    if (!saved) return;
+    try {
+      load(*saved);
+    } catch (const std::runtime_error&) {  // a checkpoint that cannot be read is no loss but of time
+      training_ = solver.start(inputs);
+      progress_ = {};
+    }
+  }
+
+  /// Throws Interrupted when the run should stop.
+  void run() {
+    CheckpointClock clock;
+    std::int64_t done = training_->progress().done;
+    for (bool more = true; more;) {
+      const bool stop = context_.parallel().stop_requested();
+      if (stop || clock.due()) clock.save(context_, state());
+      if (stop) throw Interrupted();
+      more = training_->advance(context_.parallel());
+      const TrainingProgress progress = training_->progress();
+      if (progress.done == done) continue;  // nothing was left to do
+      done = progress.done;
+      progress_.add(progress);
+      context_.progress(progress.done, progress.total);
+    }
+    context_.count("iterations", done);
+  }
+
+  TrainingResult result() const { return training_->result(); }
+  Table progress() const { return progress_.table(); }
+
+ private:
+  void load(Archive& archive) {
+    {
+      const Archive::Scope scope(archive, "training");
+      training_->load(archive);
+    }
+    const Archive::Scope scope(archive, "progress");
+    progress_.load(archive);
+  }
+  Archive state() const {
+    Archive archive;
+    {
+      const Archive::Scope scope(archive, "training");
+      training_->save(archive);
+    }
+    const Archive::Scope scope(archive, "progress");
+    progress_.save(archive);
+    return archive;
+  }
+
+  NodeContext& context_;
+  std::unique_ptr<Training> training_;
+  ProgressTable progress_;
+};
+
+/// What a solver learns: a policy, and for some also a value function.
+struct TrainNode : Node {
+  Reference problem, value, policy;
+  References samples;
+  Sub<Solver> solver;
+
+  std::vector<std::string> makes() const override { return {"policy", "function", "progress", "timing"}; }
+  bool gathers(std::string_view parameter) const override { return parameter == "samples"; }
+  std::vector<std::string> labelled_tables() const override { return {std::string(kProgressFile)}; }
+
+  void check(const NodeContext& context) const override {
+    const auto target = load_problem(context.inputs("problem").front());
+    const Solver::Needs needs = solver->needs();
+    const std::string& name = solver.resolved.name;
+    if (needs.samples && samples.empty()) {
+      throw std::invalid_argument(
+          fmt::format("<{}> learns from samples: give samples=\"...\", a collect or dataset node", name));
+    }
+    if (needs.simulator && target->simulator() == nullptr) {
+      throw std::invalid_argument(fmt::format(
+          "<{}> needs a problem that can be set to any state; '{}' only offers episodes", name, problem.id));
+    }
+    const std::size_t actions = target->spaces().actions.size();
+    if (needs.single_action && actions != 1) {
+      throw std::invalid_argument(fmt::format(
+          "<{}> can choose the parameters of one action; '{}' has {} actions", name, problem.id, actions));
+    }
+    if (!policy.id.empty()) load_policy(context.inputs("policy").front(), *target);
+  }
+
+  void run(NodeContext& context) const override {
+    const auto target = load_problem(context.inputs("problem").front());
+    const Dataset gathered = gather(context, target->spaces());
+    TrainingInputs inputs;
+    inputs.problem = target.get();
+    if (!samples.empty()) inputs.samples = &gathered;
+    if (!value.id.empty())
+      inputs.value = load_value_function(context.inputs("value").front(), target->spaces());
+    if (!policy.id.empty()) inputs.initial_policy = load_policy(context.inputs("policy").front(), *target);
+    inputs.draws = context.draws();
+
+    Learning learning(*solver, inputs, context);
+    learning.run();
+    write(learning.result(), target->spaces(), context);
+    write_table(context.folder() / kProgressFile, learning.progress());
+    context.count("samples", static_cast<std::int64_t>(gathered.rows()));
+  }
+
+  static Parameters<TrainNode> parameters() {
+    using This = TrainNode;
+    return node_parameters<This>()
+        .reference("problem", &This::problem, "problem", "What the policy is for.")
+        .references("samples", &This::samples, "dataset",
+                    "Transitions to learn from; those of several nodes are joined.", false)
+        .reference("value", &This::value, "function", "A value function learned elsewhere.", false)
+        .reference("policy", &This::policy, "policy", "A policy to begin with.", false)
+        .direct(&This::solver, "How it is learned.");
+  }
+
+ private:
+  Dataset gather(const NodeContext& context, const Spaces& spaces) const {
+    std::vector<Dataset> parts;
+    for (const InputNode& node : context.inputs("samples")) parts.push_back(load_dataset(node, spaces));
+    return parts.size() == 1 ? std::move(parts.front()) : parts.empty() ? Dataset(spaces, 0) : join(parts);
+  }
+
+  static void write(const TrainingResult& result, const Spaces& spaces, NodeContext& context) {
+    PolicyFile policy_file{.writer = {},
+                           .provenance = context.key(),
+                           .spaces = spaces,
+                           .component = result.policy.resolved,
+                           .arrays = {}};
+    result.policy->save(policy_file.arrays);
+    write_policy_file(context.folder() / kPolicyFile, policy_file);
+    if (!result.value) return;
+    FunctionFile value_file{.writer = {},
+                            .provenance = context.key(),
+                            .inputs = {},
+                            .output = "value",
+                            .component = result.value.resolved,
+                            .arrays = {}};
+    for (const Axis& axis : spaces.states) value_file.inputs.push_back("s_" + axis.name);
+    result.value->save(value_file.arrays);
+    write_function_file(context.folder() / kValueFile, value_file);
+  }
+};
+
+const Component<Node, TrainNode> kComponent("train", "Learn a policy with a solver.", "no publication");
+
+}  // namespace
+}  // namespace coppice
