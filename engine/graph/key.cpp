@@ -18,15 +18,14 @@ bool is_node_option(std::string_view name) {
   return std::find(kOptions.begin(), kOptions.end(), name) != kOptions.end();
 }
 
-/// The sub-components that fill a slot of a resolved element (E is Element or const Element).
-template <class E>
-std::vector<E*> fillers(E& resolved, const SlotInfo& slot) {
-  std::vector<E*> found;
-  for (E& child : resolved.children) {
+/// The sub-components that fill a slot of a resolved element.
+std::vector<const Element*> fillers(const Element& resolved, const SlotInfo& slot) {
+  std::vector<const Element*> found;
+  for (const Element& child : resolved.children) {
     if (slot.direct) {
       if (Catalogue::instance().find(slot.interface, child.name) != nullptr) found.push_back(&child);
     } else if (child.name == slot.name) {
-      for (E& part : child.children) found.push_back(&part);
+      for (const Element& part : child.children) found.push_back(&part);
     }
   }
   return found;
@@ -109,18 +108,6 @@ std::string with_prefix(std::string_view text, std::string_view from, std::strin
     text.remove_prefix(end);
   }
   return result;
-}
-
-void make_files_absolute(Element& resolved, std::string_view interface) {
-  const ComponentInfo& info = info_of(interface, resolved);
-  for (const ParameterInfo& parameter : info.parameters) {
-    const Attribute* given = resolved.find(parameter.name);
-    if (parameter.type != ValueType::file || given == nullptr || given->value.empty()) continue;
-    resolved.set(parameter.name, std::filesystem::absolute(given->value).lexically_normal().string());
-  }
-  for (const SlotInfo& slot : info.slots) {
-    for (Element* part : fillers(resolved, slot)) make_files_absolute(*part, slot.interface);
-  }
 }
 
 std::vector<std::pair<std::string, std::string>> key_lines(std::string_view text) {

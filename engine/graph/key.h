@@ -44,9 +44,6 @@ void add_component(std::string& text, const std::string& prefix, std::string_vie
 /// Lines of `text` with "from" replaced by "to" at the start of each name.
 std::string with_prefix(std::string_view text, std::string_view from, std::string_view to);
 
-/// The files named by a resolved component get absolute paths: a flat config may lie elsewhere.
-void make_files_absolute(Element& resolved, std::string_view interface);
-
 /// A key text in its lines, for comparing.
 std::vector<std::pair<std::string, std::string>> key_lines(std::string_view text);
 

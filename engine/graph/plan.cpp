@@ -149,9 +149,7 @@ void resolve_elements(const Declarations& declarations, ExperimentConfig& experi
   }
   for (NodeElement& node : experiment.nodes) {
     const auto found = resolved.find(&node.element);
-    if (found == resolved.end()) continue;
-    node.element = *found->second;
-    make_files_absolute(node.element, Node::kInterface);
+    if (found != resolved.end()) node.element = *found->second;
   }
 }
 
