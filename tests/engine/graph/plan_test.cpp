@@ -93,7 +93,7 @@ TEST(Join, SeveralSweepsMakeAProductAndPointsWithOddTextsGetFoldersOfTheirOwn) {
 
 TEST(References, MistakesAreLocatedAndNameTheNearest) {
   EXPECT_TRUE(contains(errors("<fake_source id='samples'/><fake_step id='y' from='sample'/>"),
-                       "1:59 'from' names 'sample', and no node has this id | did you mean 'samples'"));
+                       "1:64 'from' names 'sample', and no node has this id | did you mean 'samples'"));
   EXPECT_TRUE(
       contains(errors("<fake_constant id='c'/><fake_source id='d'/><fake_step id='y' from='c'/>"),
                "'from' needs a node that makes a data, and 'c' (<fake_constant>) makes none | valid: d"));
