@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +29,10 @@ struct SweepPoints {
   Place place;
   std::vector<std::string> columns;
   std::vector<Point> points;
+  /// An argument given several values (a:=1,2,3): every node runs over it, whether its element depends on it
+  /// or not. A node that gathers may take all its points at once where its element is the same at all of
+  /// them.
+  bool from_command_line = false;
 };
 
 /// A node element of one sweep point: everything substituted, without over, at, if and unless.
@@ -42,7 +48,8 @@ struct InputFile {
   std::string hash;
 };
 
-/// A config after includes, arguments, macros, conditions and sweeps.
+/// A config after includes, arguments, macros, conditions and sweeps. The ids of nodes are unique (one
+/// element may stand for many points) and fit for file names.
 struct ExperimentConfig {
   std::string name;
   std::string doc;
@@ -52,13 +59,33 @@ struct ExperimentConfig {
   std::vector<SweepPoints> sweeps;
   std::vector<NodeElement> nodes;  ///< in document order; the points of one element stand together
   std::vector<InputFile> files;
-  std::vector<Override> overrides;                ///< those that this config took
+  std::vector<Override> overrides;               ///< those that this config took
   std::map<std::string, std::string> arguments;  ///< every declared argument with its final value
+  /// False when a mistake may have left out nodes, sweeps or arguments: missing ones are then no mistakes of
+  /// their own.
+  bool complete = true;
 };
 
-/// Expands one config. Overrides that no file declares are errors (with the nearest declared name). Throws ConfigError
-/// with every mistake found.
+struct ExpandOptions {
+  std::vector<Override> overrides;
+  std::optional<std::uint64_t> seed;  ///< instead of the config's own
+};
+
+/// Expands one config. Mistakes go to `diagnostics`; what they leave undecided is marked in the result
+/// (`complete`, Attribute::failed, Element::failed), so that later checks can go on without repeating them.
+/// Overrides that the config does not declare are no mistakes here: see check_overrides.
+ExperimentConfig expand(const std::string& path, const ExpandOptions& options, Diagnostics& diagnostics);
+/// The same for a text in memory; the path in `source` is where relative files are looked for.
+ExperimentConfig expand(const std::shared_ptr<const SourceFile>& source, const ExpandOptions& options,
+                        Diagnostics& diagnostics);
+/// Expands one config alone. Throws ConfigError with every mistake found, overrides that no file declares
+/// included.
 ExperimentConfig expand(const std::string& path, const std::vector<Override>& overrides);
+
+/// With several configs each takes the overrides that it declares. Reports those that none declares, with the
+/// nearest name, and those given twice.
+void check_overrides(const std::vector<ExperimentConfig>& experiments, const std::vector<Override>& overrides,
+                     Diagnostics& diagnostics);
 
 /// The flat file: expand() of its text gives the same experiment again.
 Element flat(const ExperimentConfig& experiment);
@@ -66,13 +93,16 @@ Element flat(const ExperimentConfig& experiment);
 /// Names of attributes that belong to the language, not to a component: if, unless (on every element).
 bool is_control_attribute(std::string_view name);
 
-/// Declarations of the control elements (include, arg, let, macro, call, insert, group, sweep and its parts): for the
-/// schema, the manual and completion.
+/// Declarations of the control elements: for the schema, the manual, completion, and for checking configs.
+/// The same name may be declared several times, for different parents.
 struct ControlElement {
   std::string name;
   std::string doc;
-  std::vector<std::pair<std::string, std::string>> attributes;  ///< name, doc; required ones end in '!'
-  std::vector<std::string> children;                            ///< control elements allowed inside; "*": anything
+  /// Name and doc; required ones end in '!'; "*" stands for any further attribute.
+  std::vector<std::pair<std::string, std::string>> attributes;
+  std::vector<std::string> children;  ///< control elements allowed inside; "*": anything
+  std::vector<std::string>
+      inside;  ///< the control elements it stands in; empty: anywhere (the root: nowhere)
 };
 const std::vector<ControlElement>& control_elements();
 

@@ -24,8 +24,10 @@ void for_each_item(std::string_view text, const Found& found) {
   bool quoted = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    // A quote opens only where an item or an expression can: the apostrophe in "Newton's method" is a letter.
-    const bool opens = depth > 0 || trim(text.substr(begin, i - begin)).empty();
+    // A quote opens only where an item, a value or an expression does: in "Newton's method" it is an
+    // apostrophe.
+    const std::string_view before = trim(text.substr(begin, i - begin));
+    const bool opens = depth > 0 || before.empty() || before.back() == '=';
     if (c == '\'' && (quoted || opens)) quoted = !quoted;
     if (quoted) continue;
     if (c == '(' || c == '[' || c == '{') ++depth;

@@ -1,0 +1,207 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/config/attribute_place.h"
+#include "engine/config/control_check.h"
+#include "engine/config/expander.h"
+#include "registry/suggest.h"
+#include "registry/text.h"
+
+namespace coppice::config {
+namespace {
+
+std::string point_text(const Point& point) {
+  std::vector<std::string> parts;
+  for (const auto& [column, value] : point) parts.push_back(column + "=" + value);
+  return join(parts);
+}
+
+}  // namespace
+
+/// A node of the experiment: one element for each point of the sweeps that it runs over.
+void Expander::node(const Element& element, const Context& context) {
+  Context inner = context;
+  inner.inside = true;
+  const std::vector<DefinedSweep*> sweeps = sweeps_of(element, inner);
+  std::optional<Attribute> id;
+  if (const Attribute* raw = element.find("id")) id = evaluator_.attribute(*raw, inner);
+  if (id && id->failed) result_.complete = false;
+  const Attribute* at = element.find("at");
+  if (at != nullptr) {
+    const std::optional<std::vector<std::size_t>> rows = point_of(*at, sweeps, inner);
+    if (rows) node_at_point(element, sweeps, *rows, id, inner);
+    if (!rows) result_.complete = false;
+    return;
+  }
+  std::vector<std::size_t> rows(sweeps.size(), 0);
+  for (bool more = true; more;) {
+    node_at_point(element, sweeps, rows, id, inner);
+    more = false;
+    for (std::size_t i = sweeps.size(); i-- > 0 && !more;) {  // the last sweep changes fastest
+      more = ++rows[i] < sweeps[i]->rows.rows.size();
+      if (!more) rows[i] = 0;
+    }
+  }
+}
+
+/// The sweeps that `over` names. After a mistake, names that could be columns are no mistakes of their own.
+std::vector<Expander::DefinedSweep*> Expander::sweeps_of(const Element& element, Context& context) {
+  std::vector<DefinedSweep*> sweeps;
+  const Attribute* over = element.find("over");
+  if (over == nullptr) return sweeps;
+  const std::optional<std::string> text = evaluator_.text(*over, context);
+  bool good = text.has_value();
+  const Attribute worked_out{over->name, text.value_or(""), over->name_place, over->value_place};
+  const std::vector<std::string> ids = split_items(worked_out.value);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const auto found = sweeps_.find(ids[i]);
+    const bool twice = found != sweeps_.end() &&
+                       std::find(sweeps.begin(), sweeps.end(), found->second.get()) != sweeps.end();
+    if (found == sweeps_.end() || twice) {
+      std::vector<std::string> known;
+      for (const auto& [id, sweep] : sweeps_) known.push_back(id);
+      const Place place =
+          place_in(worked_out, item_offsets(worked_out.value)[i], std::max<std::size_t>(1, ids[i].size()));
+      error(place, context,
+            twice ? fmt::format("the sweep '{}' is named twice", ids[i])
+                  : fmt::format("there is no sweep '{}'", ids[i]),
+            twice           ? ""
+            : known.empty() ? "no sweep is defined before this node"
+                            : suggestion(ids[i], known));
+      good = false;
+      continue;
+    }
+    good = good && !found->second->failed;
+    sweeps.push_back(found->second.get());
+  }
+  if (good && ids.empty()) {
+    error(over->value_place, context, "'over' names no sweep",
+          "leave it out, or name sweeps separated by commas");
+    good = false;
+  }
+  if (good && check_shared_columns(*over, sweeps, context)) return sweeps;
+  result_.complete = false;
+  context.names_unknown = true;
+  return {};
+}
+
+/// The columns of a node have different names, and names of their own.
+bool Expander::check_shared_columns(const Attribute& over, const std::vector<DefinedSweep*>& sweeps,
+                                    const Context& context) {
+  std::map<std::string, std::string> seen;
+  for (const DefinedSweep* sweep : sweeps) {
+    for (const std::string& column : sweep->rows.columns) {
+      const auto [first, added] = seen.emplace(column, sweep->points.id);
+      if (!added) {
+        error(over.value_place, context,
+              fmt::format("the sweeps '{}' and '{}' both have the column '{}'", first->second,
+                          sweep->points.id, column),
+              "a node runs over sweeps with different columns");
+        return false;
+      }
+      const Definition* hidden = context.scope->find_before(*global_, column);
+      if (hidden == nullptr) continue;
+      error(over.value_place, context,
+            fmt::format("the column '{}' of sweep '{}' has the name of a {}", column, sweep->points.id,
+                        hidden->what));
+      return false;
+    }
+  }
+  return true;
+}
+
+void Expander::node_at_point(const Element& element, const std::vector<DefinedSweep*>& sweeps,
+                             const std::vector<std::size_t>& rows, const std::optional<Attribute>& id,
+                             const Context& context) {
+  ColumnValues columns;
+  NodeElement made;
+  for (std::size_t i = 0; i < sweeps.size(); ++i) {
+    const DefinedSweep& sweep = *sweeps[i];
+    made.sweeps.push_back(sweep.points.id);
+    const Point& point = sweep.points.points[rows[i]];
+    made.point.insert(made.point.end(), point.begin(), point.end());
+    for (std::size_t c = 0; c < sweep.rows.columns.size(); ++c) {
+      columns.push_back({&sweep.rows.columns[c], &sweep.rows.rows[rows[i]][c]});
+    }
+  }
+  Context inner = context;
+  inner.columns = &columns;
+  inner.scope = std::make_shared<Scope>(context.scope, &columns);
+  if (element.find("over") != nullptr && !wanted(element, inner)) return;
+  made.element.name = element.name;
+  made.element.place = traced(element.place, context);
+  made.element.attributes.reserve(element.attributes.size());
+  for (const Attribute& attribute : element.attributes) {
+    if (is_control_attribute(attribute.name) || attribute.name == "over" || attribute.name == "at") continue;
+    made.element.attributes.push_back(attribute.name == "id" ? *id : evaluator_.attribute(attribute, inner));
+  }
+  made.element.children.reserve(element.children.size());
+  children(element, inner, &made.element);
+  count(element, context);
+  if (id && !id->failed) check_id(made, *id);
+  result_.nodes.push_back(std::move(made));
+}
+
+/// Several elements may share an id if they are of one kind, run over the same sweeps and stand for different
+/// points.
+void Expander::check_id(const NodeElement& node, const Attribute& id) {
+  if (!is_id(id.value)) {
+    diagnostics_.error(id.value_place, fmt::format("'{}' cannot be the id of a node", id.value),
+                       "letters, digits, '_' and '-' make an id");
+    return;
+  }
+  const auto [found, added] = node_ids_.try_emplace(id.value);
+  DefinedNode& first = found->second;
+  if (added) first = {id.value_place, node.element.name, node.sweeps, {}};
+  const bool alike = first.kind == node.element.name && first.sweeps == node.sweeps;
+  if (alike && first.points.insert(point_text(node.point)).second) return;
+  diagnostics_.error(id.value_place, fmt::format("the node '{}' is defined a second time", id.value),
+                     first.place.file ? fmt::format("it was defined at {}:{}:{}", first.place.file->path,
+                                                    first.place.line, first.place.column)
+                                      : "");
+}
+
+/// The row of each sweep that at="column=value, ..." selects; nothing after a mistake.
+std::optional<std::vector<std::size_t>> Expander::point_of(const Attribute& at,
+                                                           const std::vector<DefinedSweep*>& sweeps,
+                                                           const Context& context) {
+  const std::optional<std::string> text = evaluator_.text(at, context);
+  if (!text || context.names_unknown) return std::nullopt;
+  std::map<std::string, std::string> given;
+  for (const std::string& item : split_items(*text)) {
+    const std::size_t equals = item.find('=');
+    const std::string column(trim(item.substr(0, equals)));
+    if (equals == std::string::npos || !given.emplace(column, trim(item.substr(equals + 1))).second) {
+      error(at.value_place, context, fmt::format("'{}' is not one column=value for each column", *text));
+      return std::nullopt;
+    }
+  }
+  std::vector<std::size_t> rows;
+  std::size_t used = 0;
+  for (DefinedSweep* sweep : sweeps) {
+    if (sweep->index.empty()) {
+      for (std::size_t i = 0; i < sweep->points.points.size(); ++i)
+        sweep->index[point_text(sweep->points.points[i])] = i;
+    }
+    Point point;
+    for (const std::string& column : sweep->points.columns) {
+      used += given.contains(column) ? 1 : 0;
+      point.emplace_back(column, given[column]);
+    }
+    const auto found = sweep->index.find(point_text(point));
+    if (found == sweep->index.end()) {
+      error(at.value_place, context,
+            fmt::format("the sweep '{}' has no point {}", sweep->points.id, point_text(point)));
+      return std::nullopt;
+    }
+    rows.push_back(found->second);
+  }
+  if (used == given.size() && !sweeps.empty()) return rows;
+  error(at.value_place, context,
+        fmt::format("'at' names columns that the node's sweeps do not have: {}", *text),
+        "'over' names the sweeps");
+  return std::nullopt;
+}
+
+}  // namespace coppice::config
