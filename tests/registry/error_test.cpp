@@ -1,0 +1,133 @@
+#include "registry/error.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/registry/helpers.h"
+
+namespace coppice {
+namespace {
+
+using test::text_file;
+
+TEST(SourceFile, GivesLinesWithoutTheirEnds) {
+  const SourceFile file{"a", "one\r\n\nthree"};
+  EXPECT_EQ(file.line(1), "one");
+  EXPECT_EQ(file.line(2), "");
+  EXPECT_EQ(file.line(3), "three");
+  EXPECT_EQ(file.line(4), "");
+  EXPECT_EQ(file.line(0), "");
+}
+
+std::string lines(int count) {
+  return std::string(static_cast<std::size_t>(count), '\n');
+}
+
+TEST(DiagnosticText, QuotesTheLineAndTellsHowItWasReached) {
+  const auto all = text_file("", "configs/thesis/all.xml");
+  const auto outer =
+      std::make_shared<TraceFrame>(TraceFrame{"in macro 'trainer' called at", all, 19, nullptr});
+  const auto inner = std::make_shared<TraceFrame>(TraceFrame{"included from", all, 4, outer});
+  const auto file =
+      text_file(lines(11) + "        <cma_es populaton=\"20\"/>\n", "configs/thesis/pendulum.xml");
+  EXPECT_EQ(to_text({{file, 12, 17, 9, inner},
+                     "<cma_es> has no parameter 'populaton'",
+                     "did you mean 'population' (integer >= 2, default 4)?",
+                     {}}),
+            "configs/thesis/pendulum.xml:12:17: error: <cma_es> has no parameter 'populaton'\n"
+            "   12 |         <cma_es populaton=\"20\"/>\n"
+            "      |                 ^~~~~~~~~ did you mean 'population' (integer >= 2, default 4)?\n"
+            "   note: included from configs/thesis/all.xml:4, in macro 'trainer' called at "
+            "configs/thesis/all.xml:19\n");
+}
+
+TEST(DiagnosticText, WithoutLineKeepsTheHint) {
+  EXPECT_EQ(
+      to_text(
+          {{text_file("", "a.xml"), 0, 0, 1, nullptr}, "the file is empty", "write something", {"first"}}),
+      "a.xml: error: the file is empty\n   note: write something\n   note: first\n");
+  EXPECT_EQ(to_text({{}, "nothing to do", "", {}}), "error: nothing to do\n");
+}
+
+TEST(DiagnosticText, CaretStandsBelowItsCharacterAfterTabsAndWideCharacters) {
+  const auto tabs = text_file("\t\t<a b=\"1\"/>");
+  EXPECT_EQ(to_text({{tabs, 1, 6, 1, nullptr}, "m", "", {}}),
+            "a.xml:1:6: error: m\n    1 | \t\t<a b=\"1\"/>\n      | \t\t   ^\n");
+  const auto accents = text_file("<h\xC3\xA9 x=\"\"/>");  // two bytes, one column
+  EXPECT_EQ(to_text({{accents, 1, 5, 1, nullptr}, "m", "", {}}),
+            "a.xml:1:5: error: m\n    1 | <h\xC3\xA9 x=\"\"/>\n      |     ^\n");
+  const auto wide = text_file("<\xE4\xB8\xAD x=\"\"/>");  // one character, two columns
+  EXPECT_EQ(to_text({{wide, 1, 4, 1, nullptr}, "m", "", {}}),
+            "a.xml:1:4: error: m\n    1 | <\xE4\xB8\xAD x=\"\"/>\n      |     ^\n");
+}
+
+TEST(DiagnosticText, UnderlineEndsWithTheLine) {
+  EXPECT_EQ(to_text({{text_file("<ab"), 1, 2, 100, nullptr}, "m", "h", {}}),
+            "a.xml:1:2: error: m\n    1 | <ab\n      |  ^~ h\n");
+  EXPECT_EQ(to_text({{text_file("<ab"), 1, 4, 1, nullptr}, "m", "", {}}),
+            "a.xml:1:4: error: m\n    1 | <ab\n      |    ^\n");
+}
+
+TEST(DiagnosticText, CutsLongLinesAroundTheCaret) {
+  const auto file = text_file(std::string(5000, 'x') + "HERE" + std::string(5000, 'y'));
+  const std::string text = to_text({{file, 1, 5001, 4, nullptr}, "m", "", {}});
+  EXPECT_LT(text.size(), 600u);
+  const std::size_t quoted = text.find("    1 | ");
+  const std::size_t caret = text.find("      | ");
+  EXPECT_EQ(text.substr(quoted + (text.find("^~~~") - caret), 4), "HERE");
+}
+
+TEST(DiagnosticText, SendsNoControlCodesToTheTerminal) {
+  const std::string text = to_text({{text_file("a\x1B[31mb\xFF"), 1, 1, 1, nullptr}, "m", "", {}});
+  EXPECT_EQ(text.find('\x1B'), std::string::npos);
+  EXPECT_NE(text.find("a?[31mb?"), std::string::npos);
+}
+
+TEST(ConfigError, SortsByFileAndPlaceAndDropsRepetitions) {
+  const auto a = text_file("1\n2\n3\n", "a.xml");
+  const auto b = text_file("1\n", "b.xml");
+  const auto trace = std::make_shared<TraceFrame>(TraceFrame{"included from", b, 1, nullptr});
+  const ConfigError error({{{b, 1, 1, 1, nullptr}, "fourth", "", {}},
+                           {{a, 3, 1, 1, nullptr}, "third", "", {}},
+                           {{a, 2, 5, 1, nullptr}, "second", "", {}},
+                           {{a, 2, 1, 1, nullptr}, "first", "", {}},
+                           {{a, 2, 1, 1, trace}, "first", "", {}}});
+  ASSERT_EQ(error.diagnostics().size(), 4u);
+  EXPECT_EQ(error.diagnostics()[0].message, "first");
+  EXPECT_EQ(error.diagnostics()[1].message, "second");
+  EXPECT_EQ(error.diagnostics()[2].message, "third");
+  EXPECT_EQ(error.diagnostics()[3].message, "fourth");
+  EXPECT_EQ(std::string(error.what()).find("a.xml:2:1: error: first\n    2 | 2\n"), 0u);
+}
+
+TEST(ConfigError, WithoutPlaceIsASentence) {
+  EXPECT_STREQ(ConfigError("no such node").what(), "error: no such node");
+}
+
+TEST(Diagnostics, CollectEachMistakeOnceButCountAll) {
+  Diagnostics diagnostics;
+  EXPECT_TRUE(diagnostics.empty());
+  EXPECT_NO_THROW(diagnostics.throw_if_any());
+  const Place place{text_file("x"), 1, 1, 1, nullptr};
+  diagnostics.error(place, "wrong", "hint");
+  diagnostics.error(place, "wrong", "hint");
+  EXPECT_EQ(diagnostics.all().size(), 1u);
+  EXPECT_EQ(diagnostics.size(), 2u);  // whoever compares sizes sees the second one too
+  EXPECT_THROW(diagnostics.throw_if_any(), ConfigError);
+}
+
+TEST(Diagnostics, AMistakeReportedElsewhereCountsButIsNotShown) {
+  Diagnostics diagnostics;
+  diagnostics.already_reported();
+  EXPECT_EQ(diagnostics.size(), 1u);
+  EXPECT_NO_THROW(diagnostics.throw_if_any());
+}
+
+TEST(Diagnostics, TakeOverThoseOfAnError) {
+  Diagnostics diagnostics;
+  diagnostics.add(ConfigError({{{}, "a", "", {"note"}}, {{}, "b", "", {}}}));
+  ASSERT_EQ(diagnostics.all().size(), 2u);
+  EXPECT_EQ(diagnostics.all()[0].notes, std::vector<std::string>{"note"});
+}
+
+}  // namespace
+}  // namespace coppice
