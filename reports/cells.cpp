@@ -1,0 +1,155 @@
+#include "reports/cells.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include "engine/data/csv.h"
+#include "registry/suggest.h"
+
+namespace coppice {
+namespace {
+
+std::string value_of(const Entry& entry, std::string_view name) {
+  for (const auto& [label, value] : entry.names) {
+    if (label == name) return value;
+  }
+  return {};
+}
+
+void check_keys(const std::vector<Entry>& entries, const TableKeys& keys) {
+  std::vector<std::string> known;
+  for (const Entry& entry : entries) {
+    for (const auto& [name, value] : entry.names) {
+      if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+    }
+  }
+  std::set<std::string> seen;
+  for (const std::string& key : keys.all()) {
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      throw std::invalid_argument(
+          fmt::format("rows and columns: nothing here has the column '{}'; {}", key, suggestion(key, known)));
+    }
+    if (!seen.insert(key).second) {
+      throw std::invalid_argument(fmt::format("rows and columns: '{}' stands twice", key));
+    }
+  }
+}
+
+/// Averaging over anything but replicates would hide what differs.
+void check_replicates(const std::vector<Entry>& entries, const TableCell& cell) {
+  const Entry& first = entries[cell.entries.front()];
+  std::set<std::optional<int>> replicates;
+  for (const std::size_t i : cell.entries) {
+    const Entry& entry = entries[i];
+    for (const auto& [name, value] : entry.names) {
+      const std::string other = value_of(first, name);
+      if (value == other) continue;
+      throw std::invalid_argument(
+          fmt::format("rows and columns do not tell {}=\"{}\" from {}=\"{}\": add '{}' to one of them", name,
+                      other, name, value, name));
+    }
+    const bool again = !replicates.insert(entry.replicate).second;
+    if (again || entry.replicate.has_value() != first.replicate.has_value()) {
+      throw std::invalid_argument(fmt::format("'{}' is here more than once", value_of(entry, "node")));
+    }
+  }
+}
+
+/// Numbers keys by their first appearance.
+class Order {
+ public:
+  std::size_t rank(const std::vector<std::string>& keys) {
+    return ranks_.try_emplace(keys, ranks_.size()).first->second;
+  }
+
+ private:
+  std::map<std::vector<std::string>, std::size_t> ranks_;
+};
+
+std::vector<std::string> values_of(const Entry& entry, const std::vector<std::string>& names) {
+  std::vector<std::string> values;
+  for (const std::string& name : names) values.push_back(value_of(entry, name));
+  return values;
+}
+
+/// Text, unless every key is the canonical text of a number.
+ColumnInfo::Type type_of_keys(const std::vector<TableCell>& cells, std::size_t key) {
+  bool integers = true;
+  for (const TableCell& cell : cells) {
+    const std::string& text = cell.keys[key];
+    if (text.empty()) continue;
+    const std::optional<double> value = parse_number(text);
+    if (!value || cell_text(*value) != text) return ColumnInfo::Type::text;
+    integers = integers && text.find_first_not_of("-0123456789") == std::string::npos;
+  }
+  return integers ? ColumnInfo::Type::integer : ColumnInfo::Type::number;
+}
+
+Cell key_cell(const std::string& text, ColumnInfo::Type type) {
+  if (text.empty()) return {};
+  if (type == ColumnInfo::Type::text) return text;
+  const double value = *parse_number(text);
+  return type == ColumnInfo::Type::integer ? Cell(static_cast<std::int64_t>(value)) : Cell(value);
+}
+
+}  // namespace
+
+std::vector<Entry> entries_of(const std::vector<InputNode>& nodes) {
+  std::vector<Entry> entries;
+  for (const InputNode& node : nodes) {
+    entries.push_back({node.labels, node.replicate});
+    entries.back().names.emplace_back("node", node.id);
+  }
+  return entries;
+}
+
+std::vector<std::string> TableKeys::all() const {
+  std::vector<std::string> names = rows;
+  names.insert(names.end(), columns.begin(), columns.end());
+  return names;
+}
+
+std::vector<TableCell> arrange(const std::vector<Entry>& entries, const TableKeys& keys) {
+  check_keys(entries, keys);
+  Order rows, columns;
+  std::map<std::pair<std::size_t, std::size_t>, TableCell> cells;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    std::vector<std::string> row = values_of(entries[i], keys.rows);
+    const std::vector<std::string> column = values_of(entries[i], keys.columns);
+    TableCell& cell = cells[{rows.rank(row), columns.rank(column)}];
+    if (cell.entries.empty()) {
+      cell.keys = std::move(row);
+      cell.keys.insert(cell.keys.end(), column.begin(), column.end());
+    }
+    cell.entries.push_back(i);
+  }
+  std::vector<TableCell> sorted;
+  for (auto& [place, cell] : cells) {
+    check_replicates(entries, cell);
+    sorted.push_back(std::move(cell));
+  }
+  return sorted;
+}
+
+void add_key_columns(Table& table, const TableKeys& keys, const std::vector<TableCell>& cells) {
+  table.rows.resize(cells.size());
+  const std::vector<std::string> names = keys.all();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const ColumnInfo::Type type = type_of_keys(cells, k);
+    const bool of_row = k < keys.rows.size();
+    table.columns.push_back({names[k], type, "", of_row ? "Key of the row." : "Key of the column."});
+    for (std::size_t i = 0; i < cells.size(); ++i) table.rows[i].push_back(key_cell(cells[i].keys[k], type));
+  }
+}
+
+bool same_key(std::string_view a, std::string_view b) {
+  if (a == b) return true;
+  const std::optional<double> x = parse_number(a), y = parse_number(b);
+  return x && y && *x == *y;
+}
+
+}  // namespace coppice

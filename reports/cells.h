@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/data/table_file.h"
+#include "engine/graph/node.h"
+
+namespace coppice {
+
+/// A node as a table names it.
+struct Entry {
+  std::vector<PointValue> names;  ///< its labels, then "node", its id
+  std::optional<int> replicate;
+};
+std::vector<Entry> entries_of(const std::vector<InputNode>& nodes);
+
+/// The keys of a table: names of labels, in the order of the columns.
+struct TableKeys {
+  std::vector<std::string> rows, columns;
+  std::vector<std::string> all() const;
+};
+
+/// What belongs to one combination of keys.
+struct TableCell {
+  std::vector<std::string> keys;  ///< one for each of TableKeys::all(); empty where entries have no such name
+  std::vector<std::size_t> entries;  ///< replicates of one and the same thing
+};
+
+/// Sorts entries into cells; these stand in the order in which their row's keys appear first, then their
+/// column's. Throws std::invalid_argument for a key that no entry has (with the nearest), and for entries in
+/// one cell that are not replicates of each other (with the name that tells them apart).
+std::vector<TableCell> arrange(const std::vector<Entry>& entries, const TableKeys& keys);
+
+/// The key columns of a table with these cells, as numbers where all keys are.
+void add_key_columns(Table& table, const TableKeys& keys, const std::vector<TableCell>& cells);
+
+/// Equal texts, or equal numbers.
+bool same_key(std::string_view a, std::string_view b);
+
+}  // namespace coppice

@@ -1,0 +1,53 @@
+#include "reports/known_values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "registry/error.h"
+#include "registry/suggest.h"
+
+namespace coppice {
+
+KnownValues::KnownValues(const std::string& file, const TableKeys& keys, const std::vector<TableCell>& cells)
+    : table_(read_table(file)) {
+  const std::vector<std::string> names = keys.all();
+  std::vector<std::string> valid = names;
+  valid.insert(valid.end(), {"value", "source", "note"});
+  for (const ColumnInfo& column : table_.columns) {
+    if (std::find(valid.begin(), valid.end(), column.name) != valid.end()) continue;
+    throw ConfigError(fmt::format("{}: '{}' is no key of the table; {}", file, column.name,
+                                  suggestion(column.name, valid)));
+  }
+  if (!table_.has("value")) throw ConfigError(fmt::format("{}: there is no column 'value'", file));
+  for (const std::string& name : names) {
+    columns_.push_back(table_.has(name) ? std::optional(table_.column(name)) : std::nullopt);
+  }
+  bool any = table_.rows.empty();
+  for (const TableCell& cell : cells) {
+    int found = 0;
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) found += matches(row, cell) ? 1 : 0;
+    any = any || found > 0;
+    if (found > 1) throw ConfigError(fmt::format("{}: two values for {}", file, fmt::join(cell.keys, ", ")));
+  }
+  if (!any) throw ConfigError(fmt::format("{}: none of its rows is about any cell of the table", file));
+}
+
+bool KnownValues::matches(std::size_t row, const TableCell& cell) const {
+  for (std::size_t k = 0; k < columns_.size(); ++k) {
+    if (columns_[k] && !same_key(cell_text(table_.rows[row][*columns_[k]]), cell.keys[k])) return false;
+  }
+  return true;
+}
+
+Cell KnownValues::find(const TableCell& cell) const {
+  for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+    if (!matches(row, cell)) continue;
+    const double value = number(table_.rows[row][table_.column("value")]);
+    return std::isnan(value) ? Cell() : Cell(value);
+  }
+  return {};
+}
+
+}  // namespace coppice

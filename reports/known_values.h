@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/data/table_file.h"
+#include "reports/cells.h"
+
+namespace coppice {
+
+/// Values known from elsewhere, for cells of a table: a CSV file with the column "value" and some of the
+/// table's key columns (a key that it leaves out does not matter); columns "source" and "note" may say more.
+class KnownValues {
+ public:
+  KnownValues() = default;  ///< knows nothing
+  /// Throws ConfigError naming the file: for other columns (with the nearest), and when no row is about any
+  /// of the cells, or two are about the same.
+  KnownValues(const std::string& file, const TableKeys& keys, const std::vector<TableCell>& cells);
+
+  /// The value for a cell; missing when there is none.
+  Cell find(const TableCell& cell) const;
+
+ private:
+  bool matches(std::size_t row, const TableCell& cell) const;
+
+  Table table_;
+  std::vector<std::optional<std::size_t>> columns_;  ///< of the file, by key; none: does not matter
+};
+
+}  // namespace coppice

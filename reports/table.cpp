@@ -1,0 +1,136 @@
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "engine/data/table_file.h"
+#include "engine/graph/artifacts.h"
+#include "reports/cells.h"
+#include "reports/known_values.h"
+#include "reports/metric.h"
+
+namespace coppice {
+namespace {
+
+/// What a cell shows. The unit of replication is the training run; only without replicates it is the episode.
+struct Summary {
+  std::size_t replicates = 1;
+  std::int64_t episodes = 0;
+  Estimate estimate;
+};
+
+Summary summarize(const std::vector<InputNode>& nodes, const TableCell& cell, Metric metric) {
+  std::vector<double> means;
+  Observation last;
+  for (const std::size_t i : cell.entries) {
+    last = observe(nodes[i], metric);
+    means.push_back(last.mean);
+  }
+  Summary summary{means.size(), last.episodes, estimate(means, better(metric))};
+  if (!nodes[cell.entries.front()].replicate) summary.estimate.ci95 = last.ci95;
+  return summary;
+}
+
+/// A summary of evaluations, a row for each combination of keys.
+struct TableNode : Node {
+  using Node::check;
+
+  References of;
+  std::vector<std::string> rows, columns;
+  Metric metric = Metric::cost;
+  FilePath published, reference_file;
+  std::optional<double> reference;
+
+  std::vector<std::string> makes() const override { return {"table", "timing"}; }
+  bool gathers(std::string_view) const override { return true; }
+  bool shows_labels() const override { return true; }
+  bool random() const override { return false; }
+  std::string published_in() const override { return "tables"; }
+
+  void check() const {
+    if (reference && !reference_file.path.empty()) {
+      throw std::invalid_argument("give either reference, a number, or reference_file");
+    }
+  }
+  void check(const NodeContext& context) const override { cells_and_values(context); }
+
+  void run(NodeContext& context) const override {
+    const Content content = cells_and_values(context);
+    Table table;
+    add_key_columns(table, {rows, columns}, content.cells);
+    add_value_columns(table);
+    for (std::size_t i = 0; i < content.cells.size(); ++i) {
+      const TableCell& cell = content.cells[i];
+      add_values(table.rows[i], summarize(context.inputs("of"), cell, metric));
+      table.rows[i].push_back(content.published.find(cell));
+      table.rows[i].push_back(reference ? Cell(*reference) : content.references.find(cell));
+    }
+    write_table(context.folder() / kTableFile, table);
+  }
+
+  static Parameters<TableNode> parameters() {
+    using This = TableNode;
+    return node_parameters<This>()
+        .references("of", &This::of, "evaluation", "Evaluations to summarize.")
+        .add("rows", &This::rows, "",
+             "What tells the rows apart: columns of sweeps, problem, policy, node (the evaluation's id).")
+        .add("columns", &This::columns, "", "What tells the columns apart, likewise.")
+        .choice("metric", &This::metric, metric_names(), "What is shown.")
+        .add("published", &This::published, "",
+             "CSV file of published values: column value, and keys of the table.")
+        .automatic("reference", &This::reference, "", "Best value known, for every cell; auto: none.")
+        .add("reference_file", &This::reference_file, "",
+             "CSV file of the best values known, like that of published.");
+  }
+
+ private:
+  struct Content {
+    std::vector<TableCell> cells;
+    KnownValues published, references;
+  };
+
+  Content cells_and_values(const NodeContext& context) const {
+    const TableKeys keys{rows, columns};
+    Content content;
+    content.cells = arrange(entries_of(context.inputs("of")), keys);
+    if (!published.path.empty()) content.published = {published.path, keys, content.cells};
+    if (!reference_file.path.empty()) content.references = {reference_file.path, keys, content.cells};
+    return content;
+  }
+
+  void add_value_columns(Table& table) const {
+    using Type = ColumnInfo::Type;
+    const std::string what = metric_doc(metric);
+    const std::vector<ColumnInfo> columns_of_values = {
+        {"n_replicates", Type::integer, "", "Training runs, or other independent repetitions."},
+        {"episodes", Type::integer, "", "Episodes of each evaluation."},
+        {"mean", Type::number, "", fmt::format("Mean {}: over the replicates of their means.", what)},
+        {"ci95_low", Type::number, "",
+         "Lower end of the 95 % interval of the mean: over replicates; over episodes where there are none."},
+        {"ci95_high", Type::number, "", "Upper end of that interval."},
+        {"iqm", Type::number, "", "Interquartile mean of the replicates."},
+        {"worst", Type::number, "", "Worst replicate."},
+        {"best", Type::number, "", "Best replicate."},
+        {"published", Type::number, "", "Published value."},
+        {"reference", Type::number, "", "Best value known, or near the optimum."}};
+    table.columns.insert(table.columns.end(), columns_of_values.begin(), columns_of_values.end());
+  }
+
+  static void add_values(std::vector<Cell>& row, const Summary& summary) {
+    const Estimate& estimate = summary.estimate;
+    row.emplace_back(static_cast<std::int64_t>(summary.replicates));
+    row.emplace_back(summary.episodes);
+    row.emplace_back(estimate.mean);
+    row.push_back(estimate.ci95 ? Cell(estimate.ci95->low) : Cell());
+    row.push_back(estimate.ci95 ? Cell(estimate.ci95->high) : Cell());
+    row.emplace_back(estimate.iqm);
+    row.emplace_back(estimate.worst);
+    row.emplace_back(estimate.best);
+  }
+};
+
+const Component<Node, TableNode> kComponent(
+    "table", "Summarize evaluations: mean, interval, interquartile mean, worst and best of replicates.",
+    "Agarwal et al. 2021 (interquartile mean)");
+
+}  // namespace
+}  // namespace coppice
