@@ -1,11 +1,16 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "engine/data/file_system.h"
 
 namespace coppice {
 
@@ -14,6 +19,8 @@ struct StoredFile {
   std::string name;  ///< within the node's folder
   std::uint64_t size = 0;
   std::string hash;  ///< XXH3-128 of the content, hexadecimal
+  std::int64_t modified_ns =
+      0;  ///< of the object when it was stored; another time: its content is read again
 };
 
 /// What the store knows about a key: written last, it acknowledges the result.
@@ -28,12 +35,33 @@ struct ResultRecord {
   std::vector<StoredFile> files;  ///< sorted by name
 };
 
-/// Results by key: key record -> content hashes -> objects (read-only files). A result is first written in
-/// full, then acknowledged by renaming its record into place; a process killed at any instant loses nothing
-/// acknowledged. Several processes may use one store at once. Files may be read by any thread.
+/// Results by key: key record -> content hashes -> objects (read-only files). Only reads; a store that is not
+/// there has no results. May be used by any thread.
 ///
 ///   results/ab/<key>.json   objects/ab/<hash>   timing/ab/<key>.csv   checkpoints/<key>   tmp/<process>/
-class Store {
+class StoreReader {
+ public:
+  explicit StoreReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// The result of a key, if it is whole: record readable, every object there with its size and content.
+  std::optional<ResultRecord> find(const std::string& key) const;
+  std::filesystem::path object(const std::string& hash) const;
+  std::filesystem::path timing(const std::string& key) const;
+  std::filesystem::path checkpoint(const std::string& key) const;
+
+  const std::filesystem::path& folder() const { return folder_; }
+
+ protected:
+  std::filesystem::path record(const std::string& key) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// A store to write to. A result is first written in full, then acknowledged by renaming its record into
+/// place; a process killed at any instant loses nothing acknowledged. Several processes may use one store at
+/// once, and several threads one Store.
+class Store : public StoreReader {
  public:
   /// Opens or makes the store, and removes what killed processes left in tmp. Throws ConfigError with the
   /// folder and the system's reason.
@@ -42,29 +70,31 @@ class Store {
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
 
-  /// The result of a key, if it is whole: record readable, every object there with its size.
-  std::optional<ResultRecord> find(const std::string& key) const;
-  std::filesystem::path object(const std::string& hash) const;
-  std::filesystem::path timing(const std::string& key) const;
-  std::filesystem::path checkpoint(const std::string& key) const;
-
   /// An empty folder for a node to write into.
   std::filesystem::path begin(const std::string& key);
   /// Moves every file of the folder into the store and acknowledges. `record` needs no files. A file
-  /// "timing.csv" is kept beside the result and is no part of it. Throws std::runtime_error with file and
-  /// reason.
+  /// "timing.csv" is kept beside the result and is no part of it. The key's checkpoint is removed. Throws
+  /// std::runtime_error with file and reason.
   ResultRecord commit(const std::filesystem::path& folder, ResultRecord record);
   /// Forgets a folder that begin made.
   void abandon(const std::filesystem::path& folder);
   /// Takes a result back (damaged, or to be made again).
   void remove(const std::string& key);
 
-  const std::filesystem::path& folder() const { return folder_; }
-
  private:
-  std::filesystem::path folder_;
+  void claim_temporary_folder();
+  std::filesystem::path temporary(const std::string& name);
+  void make_parent(const std::filesystem::path& file);
+  StoredFile keep(const std::filesystem::path& file, const std::string& name);
+  void keep_timing(const std::filesystem::path& file, const std::string& key);
+  void acknowledge(const ResultRecord& record);
+
+  std::unique_ptr<OpenFile> in_use_;  // shared lock: no garbage is collected meanwhile
   std::filesystem::path temporary_;
-  int lock_ = -1;
+  std::unique_ptr<OpenFile> claim_;  // lock of temporary_: its owner lives
+  std::atomic<unsigned> count_{0};   // names within temporary_
+  std::mutex mutex_;
+  std::set<std::filesystem::path> parents_;  // known to outlive a loss of power; guarded by mutex_
 };
 
 /// What collect_garbage removed.

@@ -1,0 +1,60 @@
+#include <stdexcept>
+
+#include "engine/data/hash.h"
+#include "engine/graph/record.h"
+#include "engine/graph/store.h"
+
+namespace coppice {
+namespace {
+
+/// folder/kind/ab/name: few files in each folder.
+std::filesystem::path spread(const std::filesystem::path& folder, std::string_view kind,
+                             const std::string& name, std::string_view extension = {}) {
+  std::string path;
+  path.reserve(folder.native().size() + kind.size() + name.size() + extension.size() + 5);
+  path.append(folder.native()).append("/").append(kind).append("/").append(name, 0, 2);
+  return path.append("/").append(name).append(extension);
+}
+
+/// True when the object is there, has its size, and has its content: not written since, or reading it shows.
+bool is_whole(const std::filesystem::path& object, const StoredFile& file) {
+  FileStamp stamp;
+  if (!stamp_file(object.native(), stamp) || stamp.size != file.size) return false;
+  return stamp.modified_ns == file.modified_ns || file_hash(object) == file.hash;
+}
+
+}  // namespace
+
+std::filesystem::path StoreReader::record(const std::string& key) const {
+  return spread(folder_, "results", key, ".json");
+}
+
+std::filesystem::path StoreReader::object(const std::string& hash) const {
+  return spread(folder_, "objects", hash);
+}
+
+std::filesystem::path StoreReader::timing(const std::string& key) const {
+  return spread(folder_, "timing", key, ".csv");
+}
+
+std::filesystem::path StoreReader::checkpoint(const std::string& key) const {
+  return folder_ / "checkpoints" / key;
+}
+
+std::optional<ResultRecord> StoreReader::find(const std::string& key) const {
+  const std::filesystem::path file = record(key);
+  FileStamp stamp;
+  if (!stamp_file(file.native(), stamp)) return std::nullopt;
+  try {
+    std::optional<ResultRecord> found = parse_record(read_file(file));
+    if (!found || found->key != key) return std::nullopt;
+    for (const StoredFile& part : found->files) {
+      if (!is_whole(object(part.hash), part)) return std::nullopt;
+    }
+    return found;
+  } catch (const std::runtime_error&) {  // what cannot be read is not there; writing it anew tells why
+    return std::nullopt;
+  }
+}
+
+}  // namespace coppice
