@@ -101,16 +101,14 @@ class RootReader {
                               return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
                                      (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
                             });
-    const Place& place = attribute != nullptr ? attribute->value_place : file_.root.place;
-    if (!characters) {
-      error(place, fmt::format("'{}' cannot be the name of an experiment", name),
-            attribute != nullptr ? "letters, digits, '_', '-' and '.' make a name"
-                                 : "the file's name is not fit for a folder; give the attribute 'name'");
-    } else if (name == "store" || name == "index.sqlite") {
-      error(place, fmt::format("an experiment cannot be called '{}'", name),
-            "the output folder uses this name itself");
-    }
-    return name;
+    const bool taken = name == "store" || name == "index.sqlite";
+    if (characters && !taken) return name;
+    const std::string rule =
+        taken ? "the output folder uses this name itself" : "letters, digits, '_', '-' and '.' make a name";
+    error(attribute != nullptr ? attribute->value_place : file_.root.place,
+          fmt::format("'{}' cannot be the name of an experiment", name),
+          attribute != nullptr ? rule : rule + "; the attribute 'name' gives one that is not the file's");
+    return "unnamed";
   }
 
   const LoadedFile& file_;

@@ -111,6 +111,7 @@ std::optional<Value> Evaluator::value(const Attribute& attribute, const Context&
 }
 
 std::optional<std::string> Evaluator::text(const Attribute& attribute, const Context& context) {
+  if (attribute.value.find('$') == std::string::npos) return attribute.value;
   std::vector<ExpressionError> errors;
   std::optional<std::string> text = compiled(attribute).text(ContextNames(*this, attribute, context), errors);
   report(attribute, context, errors);

@@ -56,13 +56,6 @@ class Expander {
     const Element* element = nullptr;
     Context context;
   };
-  struct DefinedNode {
-    Place place;
-    std::string kind;
-    std::vector<std::string> sweeps;
-    std::set<std::string> points;  ///< that have their element
-  };
-
   // expander.cpp: the walk. `parent` takes the expanded children; null at the top level, where nodes are
   // collected.
   void children(const Element& element, const Context& context, Element* parent);
@@ -131,7 +124,6 @@ class Expander {
   void node_at_point(const Element& element, const std::vector<DefinedSweep*>& sweeps,
                      const std::vector<std::size_t>& rows, const std::optional<Attribute>& id,
                      const Context& context);
-  void check_id(const NodeElement& node, const Attribute& id);
 
   Files& files_;
   GivenArguments& given_;
@@ -142,7 +134,6 @@ class Expander {
   std::map<std::string, std::unique_ptr<const Macro>, std::less<>> macros_;
   std::map<std::string, std::unique_ptr<DefinedSweep>, std::less<>> sweeps_;
   std::vector<const DefinedSweep*> sweep_order_;
-  std::map<std::string, DefinedNode, std::less<>> node_ids_;
   std::vector<const LoadedFile*> active_;  // files that are being expanded, each included by the one before
   std::vector<Exclusion>* exclusions_ = nullptr;  // of the sweep that is being expanded
   const Element* sweep_ = nullptr;                // that sweep

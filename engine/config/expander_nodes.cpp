@@ -139,27 +139,7 @@ void Expander::node_at_point(const Element& element, const std::vector<DefinedSw
   made.element.children.reserve(element.children.size());
   children(element, inner, &made.element);
   count(element, context);
-  if (id && !id->failed) check_id(made, *id);
   result_.nodes.push_back(std::move(made));
-}
-
-/// Several elements may share an id if they are of one kind, run over the same sweeps and stand for different
-/// points.
-void Expander::check_id(const NodeElement& node, const Attribute& id) {
-  if (!is_id(id.value)) {
-    diagnostics_.error(id.value_place, fmt::format("'{}' cannot be the id of a node", id.value),
-                       "letters, digits, '_' and '-' make an id");
-    return;
-  }
-  const auto [found, added] = node_ids_.try_emplace(id.value);
-  DefinedNode& first = found->second;
-  if (added) first = {id.value_place, node.element.name, node.sweeps, {}};
-  const bool alike = first.kind == node.element.name && first.sweeps == node.sweeps;
-  if (alike && first.points.insert(point_text(node.point)).second) return;
-  diagnostics_.error(id.value_place, fmt::format("the node '{}' is defined a second time", id.value),
-                     first.place.file ? fmt::format("it was defined at {}:{}:{}", first.place.file->path,
-                                                    first.place.line, first.place.column)
-                                      : "");
 }
 
 /// The row of each sweep that at="column=value, ..." selects; nothing after a mistake.
