@@ -105,4 +105,13 @@ Sub<Interface> make(const Element& element, Diagnostics& diagnostics) {
   return made;
 }
 
+/// An object of component T, called `name`, with the element that makes it again.
+template <class Interface, class T>
+Sub<Interface> made(T object, std::string name) {
+  Sub<Interface> sub;
+  sub.resolved = T::parameters().print(object, std::move(name));
+  sub.object = std::make_shared<T>(std::move(object));
+  return sub;
+}
+
 }  // namespace coppice

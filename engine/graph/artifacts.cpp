@@ -89,6 +89,18 @@ Dataset load_dataset(const InputNode& node, const Spaces& spaces) {
   return read_dataset(node.folder / kDatasetFile, spaces);
 }
 
+std::vector<std::string> value_columns(const Spaces& spaces, bool of_actions) {
+  std::vector<std::string> columns;
+  for (const Axis& axis : spaces.states) columns.push_back("s_" + axis.name);
+  if (!of_actions) return columns;
+  for (const ActionBox& box : spaces.actions) {
+    if (box.axes.size() != spaces.widest_action()) continue;
+    for (const Axis& axis : box.axes) columns.push_back("a_" + axis.name);
+    break;
+  }
+  return columns;
+}
+
 MadeFunction load_value_function(const InputNode& node, const Spaces& spaces) {
   if (node.folder.empty()) return {};
   const fs::path trained = node.folder / kValueFile;
@@ -97,11 +109,11 @@ MadeFunction load_value_function(const InputNode& node, const Spaces& spaces) {
     throw ConfigError(fmt::format("node '{}' made no value function: its solver has none", node.id));
   }
   const FunctionFile file = read_function_file(path);
-  std::vector<std::string> axes;
-  for (const Axis& axis : spaces.states) axes.push_back("s_" + axis.name);
-  if (file.inputs != axes) {
-    throw ConfigError(fmt::format("the function of node '{}' depends on {}; a value function depends on {}",
-                                  node.id, fmt::join(file.inputs, ", "), fmt::join(axes, ", ")));
+  const std::vector<std::string> axes = value_columns(spaces, false);
+  if (file.inputs != axes && file.inputs != value_columns(spaces, true)) {
+    throw ConfigError(fmt::format(
+        "the function of node '{}' depends on {}; a value function depends on {}, or on state and action",
+        node.id, fmt::join(file.inputs, ", "), fmt::join(axes, ", ")));
   }
   return make_function(file);
 }

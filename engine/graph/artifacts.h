@@ -37,8 +37,12 @@ MadePolicy load_policy(const InputNode& node, const Problem& problem);
 /// The dataset of a node that makes one.
 Dataset load_dataset(const InputNode& node, const Spaces& spaces);
 
-/// The value function of a node that makes a function of the state axes (fit, train). While checking it is
-/// not there yet: null.
+/// The dataset columns that a value function depends on: the state axes, and for the value of actions the
+/// action axes after them.
+std::vector<std::string> value_columns(const Spaces& spaces, bool of_actions);
+
+/// The value function of a node that makes a function of the state axes, or of state and action axes (fit,
+/// train). While checking it is not there yet: null.
 MadeFunction load_value_function(const InputNode& node, const Spaces& spaces);
 
 /// Throws std::invalid_argument when states and actions of `given` are not those of `problem`, up to their

@@ -17,4 +17,26 @@ void Function::predict_batch(const Matrix& x, Matrix& y) const {
   }
 }
 
+void save_function(const MadeFunction& function, Archive& archive) {
+  archive.put("component", to_xml(function.resolved));
+  const Archive::Scope scope(archive, "arrays");
+  function->save(archive);
+}
+
+MadeFunction load_function(Archive& archive) {
+  const auto source =
+      std::make_shared<const SourceFile>(SourceFile{"", archive.get<std::string>("component")});
+  MadeFunction function;
+  try {
+    Diagnostics diagnostics;
+    function = make<Function>(parse_xml(source), diagnostics);
+    diagnostics.throw_if_any();
+  } catch (const ConfigError& error) {
+    throw std::runtime_error(std::string("no function can be made of this archive: ") + error.what());
+  }
+  const Archive::Scope scope(archive, "arrays");
+  function.object->load(archive);
+  return function;
+}
+
 }  // namespace coppice

@@ -3,6 +3,8 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/vocabulary/archive.h"
@@ -44,12 +46,21 @@ class Function {
   virtual void predict_batch(const Matrix& x, Matrix& y) const;
   /// The largest value of output 0 over `box` for the last inputs, the first ones fixed to `prefix`
   /// (prefix.size() + box.size() == inputs()).
-  virtual Maximum maximize(std::span<const double> prefix, const Space& box, const Maximization& how) const = 0;
+  virtual Maximum maximize(std::span<const double> prefix, const Space& box,
+                           const Maximization& how) const = 0;
 
   virtual void save(Archive&) const = 0;
   virtual void load(Archive&) = 0;  ///< throws std::runtime_error for arrays that make no valid function
+
+  /// What people want to know of it: names and numbers ("leaves", 812; "depth", 14).
+  virtual std::vector<std::pair<std::string, double>> facts() const { return {}; }
 };
 using MadeFunction = Sub<Function>;
+
+/// A function together with its component, below the archive's current names.
+void save_function(const MadeFunction& function, Archive& archive);
+/// Throws std::runtime_error for what save_function did not write.
+MadeFunction load_function(Archive& archive);
 
 /// Supervised samples: row i of x belongs to row i of y.
 struct TrainingSet {
@@ -63,8 +74,8 @@ class Approximator {
  public:
   static constexpr const char* kInterface = "approximator";
   virtual ~Approximator() = default;
-  /// Same set and draws give the same function for any width of `parallel`. The set has at least one row, and is
-  /// finite; the caller checks.
+  /// Same set and draws give the same function for any width of `parallel`. The set has at least one row, and
+  /// is finite; the caller checks.
   virtual MadeFunction fit(const TrainingSet& set, const Draws& draws, Parallel& parallel) const = 0;
 };
 

@@ -153,7 +153,7 @@ struct TrainNode : Node {
                             .output = "value",
                             .component = result.value.resolved,
                             .arrays = {}};
-    for (const Axis& axis : spaces.states) value_file.inputs.push_back("s_" + axis.name);
+    value_file.inputs = value_columns(spaces, result.value->inputs() > spaces.state_size());
     result.value->save(value_file.arrays);
     write_function_file(context.folder() / kValueFile, value_file);
   }

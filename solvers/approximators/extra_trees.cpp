@@ -1,0 +1,98 @@
+#include <cmath>
+#include <stdexcept>
+
+#include "engine/vocabulary/elementary.h"
+#include "solvers/approximators/forest_function.h"
+#include "solvers/approximators/grow.h"
+
+namespace coppice {
+namespace {
+
+/// What one tree and a forest of them have in common: how each tree is grown (thesis, Algorithm 6).
+struct TreeParameters {
+  enum class Leaves { pwc, pwl };
+  Leaves leaves = Leaves::pwc;
+  std::optional<int> k;
+  std::optional<int> n_min;
+  double v_min = 0;
+  double margin = 0;
+
+  /// The rules for what is left automatic are those of the thesis's own code, which its text does not give.
+  Growth growth(std::size_t samples, std::size_t inputs) const {
+    Growth growth;
+    const bool enough = samples > inputs;  // fewer do not determine a linear model
+    growth.leaf = leaves == Leaves::pwl && enough ? LeafModel::linear : LeafModel::constant;
+    growth.candidates = k ? std::min(static_cast<std::size_t>(*k), inputs) : inputs;
+    const auto logarithm = static_cast<std::size_t>(elementary::log(static_cast<double>(samples)));
+    const std::size_t few = growth.leaf == LeafModel::linear ? std::max(inputs + 1, logarithm * inputs)
+                                                             : std::max<std::size_t>(1, logarithm);
+    growth.min_samples = n_min ? static_cast<std::size_t>(*n_min) : few;
+    growth.min_variance = v_min;
+    growth.leaf_margin = margin;
+    return growth;
+  }
+
+  template <class T>
+  static Parameters<T> declare() {
+    return Parameters<T>()
+        .choice("leaves", static_cast<Leaves T::*>(&T::leaves), {"pwc", "pwl"},
+                "Models in the leaves: constant, or linear (constant when there are too few samples).")
+        .automatic("k", static_cast<std::optional<int> T::*>(&T::k), "",
+                   "Input dimensions tried at each node; auto: all of them.", at_least(1))
+        .automatic(
+            "n_min", static_cast<std::optional<int> T::*>(&T::n_min), "",
+            "Samples in a leaf at least; auto, for N samples of D inputs: max(1, floor(ln N)) for constant "
+            "leaves, max(D + 1, D floor(ln N)) for linear ones.",
+            at_least(1))
+        .add("v_min", static_cast<double T::*>(&T::v_min), "",
+             "Nodes whose outputs have no more variance are not split.", at_least(0))
+        .add("margin", static_cast<double T::*>(&T::margin), "",
+             "A linear leaf's prediction may leave the range of its samples' outputs by this part of it.",
+             at_least(0));
+  }
+};
+
+MadeFunction grow_forest(const TrainingSet& set, const Growth& growth, std::size_t trees, const Draws& draws,
+                         Parallel& parallel) {
+  const std::size_t outputs = set.y.columns();
+  std::vector<Tree> grown(trees * outputs);  // one forest for each output dimension
+  parallel.for_each(grown.size(), [&](std::size_t i) {
+    grown[i] = grow_tree(set, i / trees, growth, draws.fork("output", i / trees).stream("tree", i % trees));
+  });
+  Forest forest(set.x.columns(), outputs, growth.leaf);
+  for (const Tree& tree : grown) forest.add(tree);
+  return made<Function>(ForestFunction(std::move(forest)), ForestFunction::kName);
+}
+
+/// Extremely randomized trees (thesis, Algorithms 4 to 7).
+class ExtraTrees : public Approximator, public TreeParameters {
+ public:
+  int trees = 25;
+
+  MadeFunction fit(const TrainingSet& set, const Draws& draws, Parallel& parallel) const override {
+    return grow_forest(set, growth(set.x.rows(), set.x.columns()), static_cast<std::size_t>(trees), draws,
+                       parallel);
+  }
+  static Parameters<ExtraTrees> parameters() {
+    return declare<ExtraTrees>().add("trees", &ExtraTrees::trees, "",
+                                     "Trees in the forest (the thesis's M, and m).", between(1, 100000));
+  }
+};
+
+/// A single tree of the same kind.
+class RegressionTree : public Approximator, public TreeParameters {
+ public:
+  MadeFunction fit(const TrainingSet& set, const Draws& draws, Parallel& parallel) const override {
+    return grow_forest(set, growth(set.x.rows(), set.x.columns()), 1, draws, parallel);
+  }
+  static Parameters<RegressionTree> parameters() { return declare<RegressionTree>(); }
+};
+
+const Component<Approximator, ExtraTrees> kForest(
+    "extra_trees", "Forest of extremely randomized trees, with constant or linear leaves.",
+    "Geurts, Ernst and Wehenkel, Machine Learning 63 (2006); L. Hofer's thesis (2017), 2.1.5");
+const Component<Approximator, RegressionTree> kTree("regression_tree", "A single extremely randomized tree.",
+                                                    "L. Hofer's thesis (2017), Algorithm 6");
+
+}  // namespace
+}  // namespace coppice

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/vocabulary/solver.h"
+#include "solvers/policies/greedy_policy.h"
+
+namespace coppice {
+
+/// Parameters of fitted Q iteration; base of the solvers that begin with it.
+struct FittedQParameters {
+  int iterations = 10;
+  std::optional<double> discount;
+  Sub<Approximator> q_value{"extra_trees"};
+  Maximization::Method maximization = Maximization::Method::merge;
+  int max_leaves = 50;
+
+  Maximization how() const { return {maximization, max_leaves}; }
+
+  template <class T>
+  static Parameters<T> declare() {
+    Parameters<T> parameters;
+    parameters
+        .add("iterations", static_cast<int T::*>(&T::iterations), "", "Iterations of Q (the thesis's N).",
+             between(1, 1000000))
+        .automatic("discount", static_cast<std::optional<double> T::*>(&T::discount), "",
+                   "Discount of a step; auto: the problem's.", between(0, 1))
+        .component(
+            "q_value", static_cast<Sub<Approximator> T::*>(&T::q_value),
+            "Approximator of the value of states and actions; constant leaves, as linear ones may diverge.");
+    return declare_maximization(parameters);
+  }
+};
+
+/// Fitted Q iteration (Ernst, Geurts and Wehenkel 2005; thesis, Algorithm 13), one iteration at a time.
+class FittedQ {
+ public:
+  /// Throws std::invalid_argument when the samples cannot be used.
+  FittedQ(const FittedQParameters& parameters, const TrainingInputs& inputs);
+
+  bool done() const { return iteration_ >= parameters_.iterations; }
+  void iterate(Parallel& parallel);
+
+  int iteration() const { return iteration_; }
+  const MadeFunction& function() const { return function_; }
+  std::vector<std::pair<std::string, double>> measures() const;
+  void save(Archive& archive) const;
+  void load(Archive& archive);
+
+ private:
+  std::vector<double> best_values(Parallel& parallel) const;
+
+  const FittedQParameters parameters_;
+  const Dataset& samples_;
+  const Space box_;  ///< of the action
+  const double discount_;
+  const Draws draws_;
+  Matrix x_;  ///< states, then actions
+  Matrix y_;  ///< targets of the last iteration
+  int iteration_ = 0;
+  double change_ = 0;  ///< root mean square of the targets' last change
+  MadeFunction function_;
+};
+
+/// The action in `box` of the largest value in each state (rows x action axes; Algorithm 14).
+Matrix best_actions(const Function& q_value, const Matrix& states, const Space& box, const Maximization& how,
+                    Parallel& parallel);
+
+}  // namespace coppice
