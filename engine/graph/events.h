@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/data/file_system.h"
+
+namespace coppice {
+
+/// A line of events.jsonl. What is empty is not written.
+struct Event {
+  std::string time;  ///< ISO 8601, UTC; now when empty
+  std::string
+      what;  ///< of the run: "run started", "run done", ...; of a node: "started", "finished", "failed"
+  std::string node;  ///< its name
+  std::string key;
+  std::string message;
+  std::optional<double> wall_s;
+  std::optional<double> cpu_s;
+};
+
+/// Appends to a journal, one JSON object a line, each in one write. Several processes may append at once. A
+/// process killed while it writes leaves a torn line, which ends where the next journal begins.
+class Journal {
+ public:
+  /// Throws std::runtime_error with the file and the system's reason.
+  explicit Journal(std::filesystem::path file);
+  /// May be called by any thread. Throws as the constructor does.
+  void write(Event event);
+
+ private:
+  std::mutex mutex_;
+  OpenFile file_;
+  bool torn_;  // the file does not end in a line end
+};
+
+/// The events of a journal in order; torn and foreign lines are left out. None when it cannot be read.
+std::vector<Event> read_events(const std::filesystem::path& file);
+
+}  // namespace coppice
