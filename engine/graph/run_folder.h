@@ -1,0 +1,64 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/graph/placement.h"
+#include "engine/graph/plan.h"
+#include "engine/graph/store.h"
+
+namespace coppice {
+
+/// The folder of one experiment's run: results linked from the store under the names of the config, and a
+/// hidden folder
+/// `.coppice` with the lock and the record of what lies where. May be read by any number of processes; one at
+/// a time writes.
+class RunFolder {
+ public:
+  /// Reads the record of the last run. Changes nothing.
+  explicit RunFolder(std::filesystem::path folder);
+
+  /// True when the node's result lies here as a run left it.
+  bool intact(const PlannedNode& node) const;
+  /// What the last run left for a node; null when it is unknown.
+  const Placement* last(const PlannedNode& node) const;
+  bool has_record() const { return recorded_; }
+  /// True while another process holds the lock.
+  bool in_use() const;
+
+  /// Makes the folder and takes it for this process. Throws ConfigError when another process has it, or when
+  /// it cannot be written.
+  void lock();
+  /// Removes what a run made and the plan does not want any more; what is in `keep` stays. Returns whether it
+  /// removed anything.
+  bool remove_all_but(const std::vector<std::string>& keep);
+  /// Puts a result into its place, with labels where the node wants them. May be called by several threads.
+  void place(const PlannedNode& node, const ResultRecord& result, const StoreReader& store);
+  /// Writes nodes/<id>.csv for every node with labelled tables: the rows of all its points, items and
+  /// replicates.
+  void join_tables(const Plan& plan);
+  /// Records what lies here. Throws std::runtime_error.
+  void save();
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  void announce(const std::string& item);
+  void forget(const std::string& item);
+  Placement linked(const PlannedNode& node, const ResultRecord& result, const StoreReader& store) const;
+  void join_table(const std::string& id, const std::vector<const PlannedNode*>& nodes);
+
+  std::filesystem::path path_;
+  Placements placements_;
+  std::vector<std::string> unrecorded_;  ///< what a killed run may have put here
+  bool recorded_ = false;
+  std::unique_ptr<OpenFile> lock_;
+  std::unique_ptr<OpenFile> announcements_;
+  std::mutex mutex_;  ///< of placements_ and announcements_ while nodes run
+};
+
+}  // namespace coppice
