@@ -51,16 +51,32 @@ bool ends_torn(const OpenFile& file) {
 
 }  // namespace
 
-Journal::Journal(std::filesystem::path file)
-    : file_(std::move(file), O_RDWR | O_CREAT | O_APPEND), torn_(ends_torn(file_)) {}
+Journal::Journal(const std::filesystem::path& file) {
+  try {
+    file_ = std::make_unique<OpenFile>(file, O_RDWR | O_CREAT | O_APPEND);
+    torn_ = ends_torn(*file_);
+  } catch (const std::runtime_error& error) {
+    error_ = error.what();
+  }
+}
 
 void Journal::write(Event event) {
   if (event.time.empty()) event.time = timestamp();
   const std::lock_guard lock(mutex_);
+  if (!file_) return;
   const std::string line = (torn_ ? "\n" : "") + to_line(event);
-  torn_ = true;  // unless the write succeeds
-  file_.write(line);
-  torn_ = false;
+  try {
+    file_->write(line);
+    torn_ = false;
+  } catch (const std::runtime_error& error) {
+    torn_ = true;
+    if (error_.empty()) error_ = error.what();
+  }
+}
+
+std::string Journal::error() const {
+  const std::lock_guard lock(mutex_);
+  return error_;
 }
 
 std::vector<Event> read_events(const std::filesystem::path& file) {

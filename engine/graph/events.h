@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -23,18 +24,20 @@ struct Event {
 };
 
 /// Appends to a journal, one JSON object a line, each in one write. Several processes may append at once. A
-/// process killed while it writes leaves a torn line, which ends where the next journal begins.
+/// process killed while it writes leaves a torn line, which ends where the next journal begins. May be used
+/// by any thread. Never throws: a run goes on without its journal.
 class Journal {
  public:
-  /// Throws std::runtime_error with the file and the system's reason.
-  explicit Journal(std::filesystem::path file);
-  /// May be called by any thread. Throws as the constructor does.
+  explicit Journal(const std::filesystem::path& file);
   void write(Event event);
+  /// The first failure, with the file and the system's reason; empty when there was none.
+  std::string error() const;
 
  private:
-  std::mutex mutex_;
-  OpenFile file_;
-  bool torn_;  // the file does not end in a line end
+  mutable std::mutex mutex_;
+  std::unique_ptr<OpenFile> file_;
+  bool torn_ = false;  // the file does not end in a line end
+  std::string error_;
 };
 
 /// The events of a journal in order; torn and foreign lines are left out. None when it cannot be read.

@@ -45,6 +45,8 @@ class StoreReader {
 
   /// The result of a key, if it is whole: record readable, every object there with its size and content.
   std::optional<ResultRecord> find(const std::string& key) const;
+  /// The record alone, whatever became of its objects.
+  std::optional<ResultRecord> read(const std::string& key) const;
   std::filesystem::path object(const std::string& hash) const;
   std::filesystem::path timing(const std::string& key) const;
   std::filesystem::path checkpoint(const std::string& key) const;

@@ -20,7 +20,12 @@ std::filesystem::path spread(const std::filesystem::path& folder, std::string_vi
 bool is_whole(const std::filesystem::path& object, const StoredFile& file) {
   FileStamp stamp;
   if (!stamp_file(object.native(), stamp) || stamp.size != file.size) return false;
-  return stamp.modified_ns == file.modified_ns || file_hash(object) == file.hash;
+  if (stamp.modified_ns == file.modified_ns) return true;
+  try {
+    return file_hash(object) == file.hash;
+  } catch (const std::runtime_error&) {  // unreadable
+    return false;
+  }
 }
 
 }  // namespace
@@ -41,20 +46,26 @@ std::filesystem::path StoreReader::checkpoint(const std::string& key) const {
   return folder_ / "checkpoints" / key;
 }
 
-std::optional<ResultRecord> StoreReader::find(const std::string& key) const {
+std::optional<ResultRecord> StoreReader::read(const std::string& key) const {
   const std::filesystem::path file = record(key);
   FileStamp stamp;
   if (!stamp_file(file.native(), stamp)) return std::nullopt;
   try {
     std::optional<ResultRecord> found = parse_record(read_file(file));
-    if (!found || found->key != key) return std::nullopt;
-    for (const StoredFile& part : found->files) {
-      if (!is_whole(object(part.hash), part)) return std::nullopt;
-    }
+    if (found && found->key != key) found.reset();
     return found;
   } catch (const std::runtime_error&) {  // what cannot be read is not there; writing it anew tells why
     return std::nullopt;
   }
+}
+
+std::optional<ResultRecord> StoreReader::find(const std::string& key) const {
+  std::optional<ResultRecord> found = read(key);
+  if (!found) return found;
+  for (const StoredFile& part : found->files) {
+    if (!is_whole(object(part.hash), part)) return std::nullopt;
+  }
+  return found;
 }
 
 }  // namespace coppice
