@@ -52,7 +52,7 @@ std::optional<ResultRecord> StoreReader::read(const std::string& key) const {
   if (!stamp_file(file.native(), stamp)) return std::nullopt;
   try {
     std::optional<ResultRecord> found = parse_record(read_file(file));
-    if (found && found->key != key) found.reset();
+    if (!found || found->key != key) return std::nullopt;
     return found;
   } catch (const std::runtime_error&) {  // what cannot be read is not there; writing it anew tells why
     return std::nullopt;
