@@ -25,7 +25,7 @@ const CommandInfo* find_command(std::string_view name) {
 
 void add_command(CommandInfo info) {
   const auto before = [](const CommandInfo& a, const CommandInfo& b) {
-    return std::tie(a.group, a.name) < std::tie(b.group, b.name);
+    return std::tie(a.group, a.rank, a.name) < std::tie(b.group, b.rank, b.name);
   };
   table().insert(std::upper_bound(table().begin(), table().end(), info, before), std::move(info));
 }

@@ -53,6 +53,7 @@ enum class Group { experiments, results, components, policies, project };
 struct CommandInfo {
   std::string name;  ///< "run", "policy act"
   Group group = Group::experiments;
+  int rank = 9;              ///< place within the group; equal ranks stand by name
   std::string doc;           ///< one line
   std::string details = {};  ///< further paragraphs; may be empty
   std::vector<Example> examples = {};
@@ -62,7 +63,7 @@ struct CommandInfo {
   std::function<int(const CommandLine&, const Given&, Console&)> run = {};
 };
 
-/// All subcommands, sorted by group and name.
+/// All subcommands, sorted by group, rank and name.
 const std::vector<CommandInfo>& commands();
 const CommandInfo* find_command(std::string_view name);
 void add_command(CommandInfo info);

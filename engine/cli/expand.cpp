@@ -19,6 +19,7 @@ struct Expand : ConfigInputs {
 const Command<Expand> kExpand(
     {.name = "expand",
      .group = Group::experiments,
+     .rank = 4,
      .doc = "Writes the flat config: includes, arguments, macros, conditions and sweeps are worked out.",
      .details = "The flat config means the same experiment. Several configs are written one after the other.",
      .examples = {{"runner expand configs/quickstart.xml", "What the config comes to."}}});

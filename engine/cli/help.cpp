@@ -15,13 +15,13 @@ const char* title(Group group) {
   return kTitles[static_cast<int>(group)];
 }
 
-/// "  left    right", the right part wrapped.
+/// "  left    right", the right part wrapped; below a left part that is too long.
 std::string row(const std::string& left, const std::string& right, std::size_t left_width,
                 std::size_t width) {
-  const std::size_t indent = left_width + 4;
-  std::string text = fmt::format("  {:<{}}  ", left, left_width);
-  if (left.size() > left_width) text += '\n' + std::string(indent, ' ');
-  return text + wrapped(std::string(indent, ' ') + right, width, indent).substr(indent) + '\n';
+  const std::string indent(left_width + 4, ' ');
+  const std::string body = wrapped(indent + right, width, indent.size());
+  if (left.size() > left_width) return "  " + left + '\n' + body + '\n';
+  return fmt::format("  {:<{}}  {}\n", left, left_width, body.substr(indent.size()));
 }
 
 std::string spelling(const ArgumentInfo& info) {
@@ -40,6 +40,7 @@ std::string usage(const CommandInfo& command) {
     if (!info.positional()) continue;
     const std::string word = info.name + (info.many ? "..." : "");
     text += info.required ? ' ' + word : " [" + word + ']';
+    if (info.completes == Completes::config) text += " [name:=value ...]";
   }
   return text + " [options]";
 }

@@ -54,6 +54,7 @@ struct List {
 
 const Command<List> kList({.name = "list",
                            .group = Group::components,
+                           .rank = 1,
                            .doc = "Lists the components, all or of one kind.",
                            .examples = {{"runner list", "All components with their kind."},
                                         {"runner list problem", "The problems."}}});

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "engine/cli/inputs.h"
 #include "registry/suggest.h"
 
 namespace coppice::cli {
@@ -97,17 +98,21 @@ void find_subcommand(const CommandLine& line, std::vector<std::string>& rest, Re
   } else if (looks_like_config(first)) {
     request.command = find_command("run");
   } else {
+    const bool near_command = !nearest(first, valid_words("")).empty();
+    const std::string file = near_command ? "" : nearest_path(first);
     throw line.error(first, "there is no subcommand '" + first + "', and no config file of this name",
-                     suggestion(first, valid_words("")));
+                     file.empty() ? suggestion(first, valid_words("")) : "did you mean '" + file + "'?");
   }
 }
 
 CLI::Option* declare(CLI::App& app, const ArgumentInfo& info) {
   const std::string names = info.letter.empty() ? info.name : info.letter + "," + info.name;
   CLI::Option* option = info.flag() ? app.add_flag(names) : app.add_option(names);
-  // Zero values are allowed here, and refused below in our own words.
-  if (!info.flag())
-    option->expected(0, info.positional() && info.many ? CLI::detail::expected_max_vector_size : 1);
+  if (info.positional()) {
+    option->expected(info.many ? -1 : 1);
+  } else if (!info.flag()) {
+    option->expected(0, 1);  // a missing value is refused below, in our own words
+  }
   option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   return option;
 }

@@ -152,6 +152,7 @@ struct PlanCommand : ConfigInputs, SelectionInputs {
 const Command<PlanCommand> kPlan(
     {.name = "plan",
      .group = Group::experiments,
+     .rank = 2,
      .doc = "Shows the nodes that would run, each with its reason and predicted time.",
      .details =
          "Reads only. What it shows is what 'run' with the same arguments does. Times are predicted from "

@@ -84,6 +84,7 @@ struct Run : ConfigInputs, SelectionInputs {
 const Command<Run> kRun(
     {.name = "run",
      .group = Group::experiments,
+     .rank = 1,
      .doc = "Plans and executes experiments; what is up to date is not run again.",
      .details =
          "The same command resumes a run that was interrupted or killed. The first Ctrl-C lets running nodes "
@@ -92,8 +93,8 @@ const Command<Run> kRun(
      .examples = {{"runner configs/quickstart.xml", "Runs one experiment; results go to out/quickstart."},
                   {"runner run configs/quickstart.xml --out results -j 1 --progress plain",
                    "On one core, into another folder, with one line per finished node."},
-                  {"runner configs/thesis/double_integrator.xml scale:=ci seed:=1",
-                   "Sets arguments of the config."}}});
+                  {"runner configs/thesis/double_integrator.xml scale:=ci --seed 7",
+                   "Sets an argument of the config, and the root seed."}}});
 
 }  // namespace
 }  // namespace coppice::cli

@@ -60,6 +60,7 @@ struct Validate : ConfigInputs {
 const Command<Validate> kValidate(
     {.name = "validate",
      .group = Group::experiments,
+     .rank = 3,
      .doc = "Checks configs without running anything; shows every mistake of every file.",
      .examples = {
          {"runner validate configs/quickstart.xml", "Checks one config."},
