@@ -1,0 +1,50 @@
+#include "engine/graph/nodes/evaluation_table.h"
+
+#include "engine/statistics/estimates.h"
+#include "engine/statistics/intervals.h"
+
+namespace coppice {
+namespace {
+
+using Type = ColumnInfo::Type;
+
+std::vector<double> numbers(const auto& values) {
+  return {values.begin(), values.end()};
+}
+
+}  // namespace
+
+Table evaluation_table(const Returns& returns, int horizon, double discount) {
+  const double mean_return = mean(returns.total);
+  const std::optional<Interval> ci = t_interval(returns.total);
+  const auto limit = [&](double Interval::*end) { return ci ? Cell((*ci).*end) : Cell(); };
+  Table table;
+  std::vector<Cell> row;
+  const auto add = [&](std::string name, Type type, Cell cell, std::string doc) {
+    table.columns.push_back({std::move(name), type, "", std::move(doc)});
+    row.push_back(std::move(cell));
+  };
+  add("episodes", Type::integer, static_cast<std::int64_t>(returns.total.size()), "Episodes played.");
+  add("mean_return", Type::number, mean_return,
+      "Mean over the episodes of the sum of rewards, undiscounted.");
+  add("mean_cost", Type::number, -mean_return, "Minus mean_return.");
+  add("sd", Type::number, standard_deviation(returns.total), "Deviation of an episode's return (n - 1).");
+  add("ci95_low", Type::number, limit(&Interval::low),
+      "Lower end of Student's 95 % interval of mean_return over the episodes.");
+  add("ci95_high", Type::number, limit(&Interval::high), "Upper end of that interval.");
+  add("mean_discounted_return", Type::number, mean(returns.discounted),
+      "Mean of the discounted sum of rewards.");
+  add("mean_steps", Type::number, mean(numbers(returns.steps)), "Mean number of steps of an episode.");
+  add("terminal_rate", Type::number, mean(numbers(returns.terminal)),
+      "Share of the episodes that ended in a terminal state, before the horizon.");
+  add("horizon", Type::integer, static_cast<std::int64_t>(horizon), "Steps of an episode at most.");
+  add("discount", Type::number, discount, "Discount of a step, for the discounted return.");
+  add("sd_discounted_return", Type::number, standard_deviation(returns.discounted),
+      "Deviation of an episode's discounted return (n - 1).");
+  add("sd_steps", Type::number, standard_deviation(numbers(returns.steps)),
+      "Deviation of an episode's number of steps (n - 1).");
+  table.rows.push_back(std::move(row));
+  return table;
+}
+
+}  // namespace coppice
