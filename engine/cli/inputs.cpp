@@ -42,20 +42,23 @@ Words sorted(const CommandLine& line, const std::vector<std::string>& words) {
   return sorted;
 }
 
-/// The configs without mistakes; those of the others go to `diagnostics`.
-std::vector<ExperimentConfig> expand_what_can_be(const CommandLine& line, const ConfigInputs& inputs,
-                                                 Diagnostics& diagnostics) {
-  const Words words = sorted(line, inputs.words);
+/// The mistakes go to `diagnostics`.
+std::vector<ExperimentConfig> expand_all(const CommandLine& line, const ConfigInputs& inputs,
+                                         Diagnostics& diagnostics) {
+  Words words = sorted(line, inputs.words);
   std::vector<ExperimentConfig> experiments;
+  bool all_there = true;
   for (const std::string& config : words.configs) {
     try {
       require_file(line, config);
-      experiments.push_back(expand(config, words.overrides));
-      if (inputs.seed) experiments.back().seed = *inputs.seed;
+      experiments.push_back(expand(config, {words.overrides, inputs.seed}, diagnostics));
     } catch (const ConfigError& error) {
       diagnostics.add(error);
+      all_there = false;
     }
   }
+  // A config that could not be read might have declared what the others do not.
+  if (all_there) check_overrides(experiments, words.overrides, diagnostics);
   return experiments;
 }
 
@@ -89,14 +92,14 @@ void require_file(const CommandLine& line, const std::string& argument) {
 
 std::vector<ExperimentConfig> expand_all(const CommandLine& line, const ConfigInputs& inputs) {
   Diagnostics diagnostics;
-  std::vector<ExperimentConfig> experiments = expand_what_can_be(line, inputs, diagnostics);
+  std::vector<ExperimentConfig> experiments = expand_all(line, inputs, diagnostics);
   diagnostics.throw_if_any();
   return experiments;
 }
 
 std::vector<Plan> plan_all(const CommandLine& line, const ConfigInputs& inputs) {
   Diagnostics diagnostics;
-  std::vector<ExperimentConfig> experiments = expand_what_can_be(line, inputs, diagnostics);
+  std::vector<ExperimentConfig> experiments = expand_all(line, inputs, diagnostics);
   std::vector<Plan> plans;
   try {
     plans = make_plans(std::move(experiments));
