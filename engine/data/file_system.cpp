@@ -101,11 +101,11 @@ void write_file(const std::filesystem::path& file, std::string_view bytes, bool 
     const OpenFile output(temporary, O_WRONLY | O_CREAT | O_TRUNC);
     output.write(bytes);
     if (durable) output.sync();
+    rename_file(temporary, file);
   } catch (...) {
     ::unlink(temporary.c_str());
     throw;
   }
-  rename_file(temporary, file);
   if (durable) sync_folder(file.parent_path());
 }
 

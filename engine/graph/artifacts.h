@@ -62,6 +62,8 @@ struct PolicyFile {
 void write_policy_file(const std::filesystem::path& file, const PolicyFile& content);
 /// Throws ConfigError naming the file and what is wrong: not a policy file, truncated, damaged, newer format.
 PolicyFile read_policy_file(const std::filesystem::path& file);
+/// The same of a file's bytes.
+PolicyFile parse_policy_file(std::string_view bytes, const std::filesystem::path& file);
 /// The policy of a file, loaded but not prepared.
 MadePolicy make_policy(const PolicyFile& file);
 

@@ -17,14 +17,6 @@ constexpr std::uint32_t kFormatVersion = 1;
   throw ConfigError({Diagnostic{{source, 0, 0, 1, nullptr}, message, {}, {}}});
 }
 
-std::string bytes_of(const std::filesystem::path& file) {
-  try {
-    return read_file(file);
-  } catch (const std::runtime_error& unreadable) {
-    throw ConfigError(unreadable.what());
-  }
-}
-
 /// The content, after all checks that need no understanding of it.
 ByteReader checked_content(const std::filesystem::path& file, const FileKind& kind, std::string_view all) {
   ByteReader bytes(all.substr(kind.magic.size()));
@@ -60,19 +52,25 @@ void write_component_file(const std::filesystem::path& file, const FileKind& kin
   write_file(file, bytes, true);
 }
 
-void read_component_file(const std::filesystem::path& file, const FileKind& kind,
-                         const std::function<void(ByteReader&)>& read) {
-  const std::string all = bytes_of(file);
-  if (!std::string_view(all).starts_with(kind.magic))
-    fail(file, fmt::format("this is not a {} file", kind.name));
+void parse_component_file(std::string_view bytes, const std::filesystem::path& file, const FileKind& kind,
+                          const std::function<void(ByteReader&)>& read) {
+  if (!bytes.starts_with(kind.magic)) fail(file, fmt::format("this is not a {} file", kind.name));
   try {
-    ByteReader bytes = checked_content(file, kind, all);
-    read(bytes);
-    if (bytes.left() > 0) throw std::runtime_error(fmt::format("{} bytes are left over", bytes.left()));
+    ByteReader content = checked_content(file, kind, bytes);
+    read(content);
+    if (content.left() > 0) throw std::runtime_error(fmt::format("{} bytes are left over", content.left()));
   } catch (const ConfigError&) {
     throw;
   } catch (const std::exception& wrong) {
     fail(file, fmt::format("the {} file is truncated or damaged: {}", kind.name, wrong.what()));
+  }
+}
+
+std::string component_file_bytes(const std::filesystem::path& file) {
+  try {
+    return read_file(file);
+  } catch (const std::runtime_error& unreadable) {
+    throw ConfigError(unreadable.what());
   }
 }
 

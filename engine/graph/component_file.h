@@ -22,10 +22,13 @@ struct FileKind {
 /// Writes the file durably; it is whole or not there. Throws std::runtime_error.
 void write_component_file(const std::filesystem::path& file, const FileKind& kind, std::string_view content);
 
-/// Checks the frame and lets `read` take the whole content, turning its std::exceptions into ConfigErrors.
-/// Throws ConfigError naming the file and what is wrong with it.
-void read_component_file(const std::filesystem::path& file, const FileKind& kind,
-                         const std::function<void(ByteReader&)>& read);
+/// Checks the frame of a file's bytes and lets `read` take the whole content, turning its std::exceptions
+/// into ConfigErrors. Throws ConfigError naming the file and what is wrong with it.
+void parse_component_file(std::string_view bytes, const std::filesystem::path& file, const FileKind& kind,
+                          const std::function<void(ByteReader&)>& read);
+
+/// The bytes of a file; throws ConfigError where it cannot be read.
+std::string component_file_bytes(const std::filesystem::path& file);
 
 /// The program's name and version.
 std::string writer_text();

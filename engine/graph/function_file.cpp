@@ -23,7 +23,7 @@ void write_function_file(const std::filesystem::path& file, const FunctionFile& 
 
 FunctionFile read_function_file(const std::filesystem::path& file) {
   FunctionFile content;
-  read_component_file(file, kKind, [&](ByteReader& bytes) {
+  parse_component_file(component_file_bytes(file), file, kKind, [&](ByteReader& bytes) {
     content.writer = bytes.text("the writer's name");
     content.provenance = bytes.text("the provenance key");
     const auto inputs = bytes.number<std::uint32_t>("the number of inputs");

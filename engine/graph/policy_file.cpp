@@ -67,15 +67,19 @@ void write_policy_file(const std::filesystem::path& file, const PolicyFile& cont
   write_component_file(file, kKind, body);
 }
 
-PolicyFile read_policy_file(const std::filesystem::path& file) {
+PolicyFile parse_policy_file(std::string_view bytes, const std::filesystem::path& file) {
   PolicyFile content;
-  read_component_file(file, kKind, [&](ByteReader& bytes) {
-    content.writer = bytes.text("the writer's name");
-    content.provenance = bytes.text("the provenance key");
-    content.spaces = read_spaces(bytes);
-    read_component(bytes, file, content.component, content.arrays);
+  parse_component_file(bytes, file, kKind, [&](ByteReader& reader) {
+    content.writer = reader.text("the writer's name");
+    content.provenance = reader.text("the provenance key");
+    content.spaces = read_spaces(reader);
+    read_component(reader, file, content.component, content.arrays);
   });
   return content;
+}
+
+PolicyFile read_policy_file(const std::filesystem::path& file) {
+  return parse_policy_file(component_file_bytes(file), file);
 }
 
 MadePolicy make_policy(const PolicyFile& file) {
