@@ -5,11 +5,18 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/data/file_system.h"
 
 namespace coppice {
+
+// What happens: to the run, ...
+inline constexpr std::string_view kRunStarted = "run started";
+inline constexpr std::string_view kRunEnded = "run ";  ///< with the outcome: "run done", "run failed", ...
+// ... and to a node.
+inline constexpr std::string_view kNodeFinished = "finished";
 
 /// A line of events.jsonl. What is empty is not written.
 struct Event {

@@ -8,9 +8,9 @@
 #include <optional>
 #include <string>
 
-struct sqlite3;
-
 namespace coppice {
+
+class Database;
 
 /// A finished node as the index keeps it.
 struct IndexedNode {
@@ -39,14 +39,14 @@ class Durations {
   std::map<std::string, Sum, std::less<>> families_, components_;
 };
 
-/// What is known below `out`: from the index, or, where there is none that can be read, from the records of
-/// the store. Never throws.
+/// What is known below `out`: from its index, or, where there is none that can be read, from the records of
+/// its store. Never throws.
 Durations read_durations(const std::filesystem::path& out);
 
 /// OUT/index.sqlite: which nodes ran when, and how long. Written by the process that started the run only. It
-/// can be made again from the journals of the run folders and the records of the store, and is, when it is
-/// missing, damaged or of another format; while it cannot be used, everything here does nothing. Never
-/// throws.
+/// can be made again from the store's records and the run folders' journals, and is when it is missing,
+/// damaged or of another format. While it cannot be used, for example because another process holds it, all
+/// this does nothing. May be used by any thread. Never throws.
 ///
 ///   nodes(key, finished, experiment, node, component, family, wall_s, cpu_s)
 ///   runs(experiment, started, finished, outcome)
@@ -59,17 +59,17 @@ class Index {
 
   void add(const IndexedNode& node);
   void begin_run(const std::string& experiment, const std::string& started);
+  /// `outcome`: "done", "failed", "interrupted".
   void end_run(const std::string& experiment, const std::string& started, const std::string& finished,
                const std::string& outcome);
   bool usable() const { return database_ != nullptr; }
 
  private:
-  struct Close {
-    void operator()(sqlite3* database) const;
-  };
+  template <class Write>
+  void attempt(const Write& write);
 
   std::mutex mutex_;
-  std::unique_ptr<sqlite3, Close> database_;
+  std::unique_ptr<Database> database_;
 };
 
 }  // namespace coppice

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -28,5 +29,7 @@ void write_provenance(const std::filesystem::path& file, const Provenance& prove
 
 /// Now, in ISO 8601, UTC, to the millisecond.
 std::string timestamp();
+/// The same for a time in ns since 1970.
+std::string timestamp(std::int64_t since_1970_ns);
 
 }  // namespace coppice

@@ -47,14 +47,14 @@ class StoreReader {
   std::optional<ResultRecord> find(const std::string& key) const;
   /// The record alone, whatever became of its objects.
   std::optional<ResultRecord> read(const std::string& key) const;
+  /// All keys that have a record, sorted.
+  std::vector<std::string> keys() const;
+  std::filesystem::path record(const std::string& key) const;
   std::filesystem::path object(const std::string& hash) const;
   std::filesystem::path timing(const std::string& key) const;
   std::filesystem::path checkpoint(const std::string& key) const;
 
   const std::filesystem::path& folder() const { return folder_; }
-
- protected:
-  std::filesystem::path record(const std::string& key) const;
 
  private:
   std::filesystem::path folder_;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <stdexcept>
 
 #include "engine/data/hash.h"
@@ -44,6 +45,18 @@ std::filesystem::path StoreReader::timing(const std::string& key) const {
 
 std::filesystem::path StoreReader::checkpoint(const std::string& key) const {
   return folder_ / "checkpoints" / key;
+}
+
+std::vector<std::string> StoreReader::keys() const {
+  namespace fs = std::filesystem;
+  std::vector<std::string> found;
+  std::error_code ignored;  // what cannot be read is not there
+  for (fs::recursive_directory_iterator i(folder_ / "results", ignored), end; i != end;
+       i.increment(ignored)) {
+    if (i->path().extension() == ".json") found.push_back(i->path().stem().string());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
 }
 
 std::optional<ResultRecord> StoreReader::read(const std::string& key) const {
