@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include "registry/error.h"
 #include "registry/suggest.h"
+#include "registry/text.h"
 
 namespace coppice {
 
@@ -29,7 +30,7 @@ KnownValues::KnownValues(const std::string& file, const TableKeys& keys, const s
     int found = 0;
     for (std::size_t row = 0; row < table_.rows.size(); ++row) found += matches(row, cell) ? 1 : 0;
     any = any || found > 0;
-    if (found > 1) throw ConfigError(fmt::format("{}: two values for {}", file, fmt::join(cell.keys, ", ")));
+    if (found > 1) throw ConfigError(fmt::format("{}: two values for {}", file, join(cell.keys)));
   }
   if (!any) throw ConfigError(fmt::format("{}: none of its rows is about any cell of the table", file));
 }
@@ -41,13 +42,11 @@ bool KnownValues::matches(std::size_t row, const TableCell& cell) const {
   return true;
 }
 
-Cell KnownValues::find(const TableCell& cell) const {
+double KnownValues::find(const TableCell& cell) const {
   for (std::size_t row = 0; row < table_.rows.size(); ++row) {
-    if (!matches(row, cell)) continue;
-    const double value = number(table_.rows[row][table_.column("value")]);
-    return std::isnan(value) ? Cell() : Cell(value);
+    if (matches(row, cell)) return number(table_.rows[row][table_.column("value")]);
   }
-  return {};
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace coppice

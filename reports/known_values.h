@@ -18,8 +18,8 @@ class KnownValues {
   /// of the cells, or two are about the same.
   KnownValues(const std::string& file, const TableKeys& keys, const std::vector<TableCell>& cells);
 
-  /// The value for a cell; missing when there is none.
-  Cell find(const TableCell& cell) const;
+  /// The value for a cell; NaN when there is none.
+  double find(const TableCell& cell) const;
 
  private:
   bool matches(std::size_t row, const TableCell& cell) const;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <limits>
 #include <stdexcept>
 
 #include "engine/data/table_file.h"
@@ -10,6 +11,8 @@
 
 namespace coppice {
 namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// What a cell shows. The unit of replication is the training run; only without replicates it is the episode.
 struct Summary {
@@ -61,8 +64,8 @@ struct TableNode : Node {
     for (std::size_t i = 0; i < content.cells.size(); ++i) {
       const TableCell& cell = content.cells[i];
       add_values(table.rows[i], summarize(context.inputs("of"), cell, metric));
-      table.rows[i].push_back(content.published.find(cell));
-      table.rows[i].push_back(reference ? Cell(*reference) : content.references.find(cell));
+      table.rows[i].emplace_back(content.published.find(cell));
+      table.rows[i].emplace_back(reference ? *reference : content.references.find(cell));
     }
     write_table(context.folder() / kTableFile, table);
   }
@@ -120,8 +123,8 @@ struct TableNode : Node {
     row.emplace_back(static_cast<std::int64_t>(summary.replicates));
     row.emplace_back(summary.episodes);
     row.emplace_back(estimate.mean);
-    row.push_back(estimate.ci95 ? Cell(estimate.ci95->low) : Cell());
-    row.push_back(estimate.ci95 ? Cell(estimate.ci95->high) : Cell());
+    row.emplace_back(estimate.ci95 ? estimate.ci95->low : kMissing);
+    row.emplace_back(estimate.ci95 ? estimate.ci95->high : kMissing);
     row.emplace_back(estimate.iqm);
     row.emplace_back(estimate.worst);
     row.emplace_back(estimate.best);

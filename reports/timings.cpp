@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "engine/data/table_file.h"
@@ -11,6 +12,8 @@
 
 namespace coppice {
 namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 enum class Time { cpu, wall, episode, action };
 constexpr std::array<const char*, 4> kTimeColumns = {"cpu_s", "wall_s", "episode_s", "action_s"};
@@ -82,7 +85,7 @@ struct TimingsNode : Node {
   double measured(const InputNode& node) const {
     const Table timing = read_table(node.folder / "timing.csv");
     const auto value = [&](const char* column) {
-      return timing.has(column) ? number(timing.rows.at(0)[timing.column(column)]) : std::nan("");
+      return timing.has(column) ? number(timing.rows.at(0)[timing.column(column)]) : kMissing;
     };
     const double seconds = value(kTimeColumns.at(static_cast<std::size_t>(time)));
     return per == Per::node ? seconds : seconds / value(kCounters.at(static_cast<std::size_t>(per)));
@@ -92,8 +95,8 @@ struct TimingsNode : Node {
     const Estimate summary = estimate(values, Better::lower);
     row.emplace_back(static_cast<std::int64_t>(values.size()));
     row.emplace_back(summary.mean);
-    row.push_back(summary.ci95 ? Cell(summary.ci95->low) : Cell());
-    row.push_back(summary.ci95 ? Cell(summary.ci95->high) : Cell());
+    row.emplace_back(summary.ci95 ? summary.ci95->low : kMissing);
+    row.emplace_back(summary.ci95 ? summary.ci95->high : kMissing);
     row.emplace_back(summary.median);
     row.emplace_back(summary.worst);
   }

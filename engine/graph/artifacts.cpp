@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "registry/text.h"
+
 namespace coppice {
 namespace {
 
@@ -113,7 +115,7 @@ MadeFunction load_value_function(const InputNode& node, const Spaces& spaces) {
   if (file.inputs != axes && file.inputs != value_columns(spaces, true)) {
     throw ConfigError(fmt::format(
         "the function of node '{}' depends on {}; a value function depends on {}, or on state and action",
-        node.id, fmt::join(file.inputs, ", "), fmt::join(axes, ", ")));
+        node.id, join(file.inputs), join(axes)));
   }
   return make_function(file);
 }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "engine/data/csv.h"
@@ -72,7 +73,7 @@ std::vector<Cell> score(std::string name, const Function& function, const Sample
   }
   const auto rows = static_cast<double>(predicted.rows());
   return {std::move(name), static_cast<std::int64_t>(predicted.rows()), std::sqrt(residual / rows),
-          total > 0 ? Cell(1 - residual / total) : Cell()};
+          total > 0 ? 1 - residual / total : std::numeric_limits<double>::quiet_NaN()};
 }
 
 /// Supervised learning: a function from some columns of a dataset to another.
