@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "engine/data/file_system.h"
+#include "engine/graph/build_info.h"
 
 namespace coppice {
 namespace {
@@ -75,7 +76,7 @@ std::string component_file_bytes(const std::filesystem::path& file) {
 }
 
 std::string writer_text() {
-  return "coppice " COPPICE_VERSION;
+  return std::string("coppice ").append(build_info().version);
 }
 
 void append_component(std::string& out, const Element& component, const Archive& arrays) {
