@@ -12,6 +12,9 @@
 
 namespace coppice {
 
+/// Name of the journal in a run folder.
+inline constexpr std::string_view kJournalFile = "events.jsonl";
+
 // What happens: to the run, ...
 inline constexpr std::string_view kRunStarted = "run started";
 inline constexpr std::string_view kRunEnded = "run ";  ///< with the outcome: "run done", "run failed", ...

@@ -73,7 +73,7 @@ void write_journal(Database& database, const fs::path& folder,
   const std::string experiment = folder.filename().string();
   Statement insert = node_insertion(database);
   std::string started;
-  for (const Event& event : read_events(folder / "events.jsonl")) {
+  for (const Event& event : read_events(folder / kJournalFile)) {
     if (event.what == kRunStarted) {
       started = event.time;
       write_run(database, experiment, started, "", "running");

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/data/file_system.h"
@@ -25,6 +26,9 @@ struct Placement {
 
 /// What the last run left in a run folder, by PlannedNode::folder.
 using Placements = std::map<std::string, Placement, std::less<>>;
+
+/// Where they are recorded, below the run folder.
+inline constexpr std::string_view kPlacementsFile = ".coppice/placements";
 
 /// Nothing when the file is not there, damaged or of another format: the folder then counts as unknown.
 std::optional<Placements> read_placements(const std::filesystem::path& file);

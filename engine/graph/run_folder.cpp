@@ -20,7 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kHidden = ".coppice";
 constexpr const char* kLock = ".coppice/lock";
-constexpr const char* kPlacements = ".coppice/placements";
 constexpr const char* kUnrecorded = ".coppice/unrecorded";
 constexpr const char* kTiming = "timing.csv";
 
@@ -41,7 +40,7 @@ std::string joined_table(const std::string& id) {
 }  // namespace
 
 RunFolder::RunFolder(fs::path folder) : path_(std::move(folder)) {
-  if (std::optional<Placements> known = read_placements(path_ / kPlacements)) {
+  if (std::optional<Placements> known = read_placements(path_ / kPlacementsFile)) {
     placements_ = std::move(*known);
     recorded_ = true;
   }
@@ -222,7 +221,7 @@ void RunFolder::join_table(const std::string& id, const std::vector<const Planne
 }
 
 void RunFolder::save() {
-  write_placements(path_ / kPlacements, placements_);
+  write_placements(path_ / kPlacementsFile, placements_);
   announcements_.reset();
   coppice::remove_all(path_ / kUnrecorded);
   recorded_ = true;
