@@ -22,7 +22,9 @@ struct Help {
     const std::string list = overview(width, name);
     if (command == nullptr && !name.empty() && !is_family(name)) {
       std::vector<std::string> known;
-      for (const CommandInfo& info : commands()) known.push_back(info.name);
+      for (const CommandInfo& info : commands()) {
+        if (!info.hidden) known.push_back(info.name);
+      }
       throw line.error(words.back(), "there is no command '" + name + "'", suggestion(name, known));
     }
     console.out(command != nullptr ? help(*command, width) : list);

@@ -1,5 +1,6 @@
 #include <csignal>
 #include <exception>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -11,14 +12,15 @@
 #include "engine/cli/help.h"
 #include "engine/cli/parse.h"
 #include "engine/cli/version.h"
+#include "engine/graph/node.h"
 #include "registry/component.h"
 
 namespace coppice::cli {
 namespace {
 
 int serve(const CommandLine& line, Console& console) {
+  console.set_color(color_choice(line));
   const Request request = parse(line);
-  console.set_color(request.color);
   const std::size_t width = static_cast<std::size_t>(console.width());
   if (request.version) {
     console.out(version_text());
@@ -51,6 +53,11 @@ int guarded(std::vector<std::string> arguments, Console& console) {
   } catch (const ConfigError& error) {
     console.say(error);
     return kBadUsage;
+  } catch (const Interrupted&) {
+    return kInterrupted;
+  } catch (const std::bad_alloc&) {
+    console.say(console.styled(Console::Style::red, "error: ") + "ran out of memory\n");
+    return kFailed;
   } catch (const std::runtime_error& error) {
     console.say(console.styled(Console::Style::red, "error: ") + error.what() + '\n');
     return kFailed;

@@ -148,6 +148,7 @@ void refuse_rest(const CommandLine& line, const CommandInfo& command, const std:
     }
   }
   for (const std::string& word : rest) {
+    if (word == "--") continue;
     const bool option = word.starts_with("-");
     const std::string name = option ? word.substr(0, word.find('=')) : word;
     if (option) {
@@ -174,6 +175,16 @@ const std::vector<ArgumentInfo>& global_arguments() {
   return all;
 }
 
+std::string color_choice(const CommandLine& line) {
+  const std::vector<std::string>& words = line.arguments();
+  std::string choice = "auto";
+  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
+    if (words[i].starts_with("--color=")) choice = words[i].substr(words[i].find('=') + 1);
+    if (words[i] == "--color" && i + 1 < words.size()) choice = words[i + 1];
+  }
+  return choice;
+}
+
 Request parse(const CommandLine& line) {
   Request request;
   std::vector<std::string> rest = line.arguments();
@@ -196,7 +207,6 @@ Request parse(const CommandLine& line) {
   const std::size_t own = command.arguments.size();
   request.help = !texts[own].empty();
   request.version = !texts[own + 1].empty();
-  if (!texts[own + 2].empty()) request.color = texts[own + 2].back();
   if (request.help || request.version) return request;
   for (std::size_t i = 0; i < declared.size(); ++i) check(line, *declared[i].first, texts[i], diagnostics);
   refuse_rest(line, command, app.remaining(), diagnostics);

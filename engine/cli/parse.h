@@ -13,11 +13,13 @@ struct Request {
   Given given;
   bool help = false;
   bool version = false;
-  std::string color = "auto";
 };
 
 /// The options of every subcommand: --help, --version, --color.
 const std::vector<ArgumentInfo>& global_arguments();
+
+/// The value of --color, known before anything else so that it holds for mistakes on the line too.
+std::string color_choice(const CommandLine& line);
 
 /// Finds the subcommand (a config where one would stand means `run`) and sorts the arguments, in any order.
 /// Throws ConfigError with every unknown or incomplete argument, each with the nearest valid name.
