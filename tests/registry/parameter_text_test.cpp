@@ -2,17 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include "registry/units.h"
+#include <string>
+#include <utility>
 
 namespace coppice {
 namespace {
 
-ParameterInfo number(Bounds bounds, const std::string& unit = "") {
+ParameterInfo number(Bounds bounds, std::string unit = {}) {
   ParameterInfo info;
-  info.name = "x";
-  info.unit = unit;
+  info.unit = std::move(unit);
   info.bounds = bounds;
-  info.default_text = "4";
+  info.default_text = std::string("4");
   return info;
 }
 
@@ -30,7 +30,7 @@ TEST(ParameterText, IsOneSentence) {
   info.type = ValueType::integer;
   EXPECT_EQ(parameter_text(info), "integer >= 2, default 4");
   info.automatic = true;
-  info.default_text = "auto";
+  info.default_text = std::string("auto");
   EXPECT_EQ(parameter_text(info), "integer >= 2 or auto, default auto");
   info = number(any(), "m/s");
   EXPECT_EQ(parameter_text(info), "number in m/s, default 4 m/s");
@@ -40,15 +40,15 @@ TEST(ParameterText, IsOneSentence) {
 
 TEST(ParameterText, NamesEveryType) {
   ParameterInfo info = number(any());
-  info.default_text = "";
+  info.default_text.clear();
   info.type = ValueType::choice;
   info.choices = {"merge", "exact"};
   EXPECT_EQ(parameter_text(info), "one of merge, exact");
   info.type = ValueType::reference;
-  info.artifact = "evaluation";
+  info.artifact = std::string("evaluation");
   EXPECT_EQ(parameter_text(info), "id of an evaluation");
   info.type = ValueType::references;
-  info.artifact = "policy";
+  info.artifact = std::string("policy");
   EXPECT_EQ(parameter_text(info), "ids, each of a policy");
   info.type = ValueType::boolean;
   EXPECT_EQ(parameter_text(info), "true or false");
