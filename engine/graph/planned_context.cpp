@@ -16,7 +16,9 @@ InputNode input_node(const PlannedNode& node, const std::filesystem::path& run_f
   input.point = node.point;
   input.replicate = node.replicate;
   input.element = *node.resolved;
-  if (!node.definition && !run_folder.empty()) input.folder = run_folder / node.folder;
+  if (!node.definition && !run_folder.empty()) {
+    input.folder = run_folder / node.folder;
+  }
   input.key = node.key;
   input.labels = node.labels;
   input.streams = node.streams;

@@ -21,7 +21,6 @@ namespace fs = std::filesystem;
 constexpr const char* kHidden = ".coppice";
 constexpr const char* kLock = ".coppice/lock";
 constexpr const char* kUnrecorded = ".coppice/unrecorded";
-constexpr const char* kTiming = "timing.csv";
 
 /// Where a file of a result goes: into the node's folder, or, when it is published, under the node's name
 /// among the others of its kind ("tables/<id>.csv").
@@ -31,10 +30,6 @@ std::string place_of_file(const PlannedNode& node, const std::string& file) {
   std::string name = node.folder.substr(std::string_view("nodes/").size());
   std::replace(name.begin(), name.end(), '/', '.');
   return shelf + "/" + name + file.substr(std::min(file.find('.'), file.size()));
-}
-
-std::string joined_table(const std::string& id) {
-  return "nodes/" + id + ".csv";
 }
 
 }  // namespace
@@ -59,11 +54,14 @@ const Placement* RunFolder::last(const PlannedNode& node) const {
 
 bool RunFolder::intact(const PlannedNode& node) const {
   const Placement* placement = last(node);
-  if (placement == nullptr || placement->key != node.key || placement->labels != labels_hash(node))
-    return false;
+  return placement != nullptr && placement->key == node.key && placement->labels == labels_hash(node) &&
+         files_intact(*placement);
+}
+
+bool RunFolder::files_intact(const Placement& placement) const {
   std::string path = path_.native() + "/";
   const std::size_t root = path.size();
-  for (const PlacedFile& file : placement->files) {
+  for (const PlacedFile& file : placement.files) {
     FileStamp stamp;
     path.resize(root);
     if (!stamp_file(path.append(file.path), stamp) || stamp != file.stamp) return false;
@@ -109,58 +107,53 @@ void RunFolder::forget(const std::string& item) {
   }
 }
 
-bool RunFolder::remove_all_but(const std::vector<std::string>& keep) {
+bool RunFolder::has_more_than(const std::vector<std::string>& keep) const {
   const std::set<std::string_view> kept(keep.begin(), keep.end());
-  bool removed = false;
+  return !unrecorded_.empty() ||
+         std::any_of(placements_.begin(), placements_.end(),
+                     [&](const auto& placement) { return !kept.contains(placement.first); });
+}
+
+void RunFolder::remove_all_but(const std::vector<std::string>& keep) {
+  const std::set<std::string_view> kept(keep.begin(), keep.end());
+  std::set<std::string_view> used;
   for (auto i = placements_.begin(); i != placements_.end();) {
     if (kept.contains(i->first)) {
+      used.insert(i->first);
+      for (const PlacedFile& file : i->second.files) used.insert(file.path);
       ++i;
       continue;
     }
     for (const PlacedFile& file : i->second.files) forget(file.path);
-    if (fs::exists(path_ / i->first)) forget(i->first);
+    std::error_code code;
+    if (fs::exists(path_ / i->first, code)) forget(i->first);
     i = placements_.erase(i);
-    removed = true;
-  }
-  std::set<std::string_view> used;
-  for (const auto& [place, placement] : placements_) {
-    used.insert(place);
-    for (const PlacedFile& file : placement.files) used.insert(file.path);
   }
   for (const std::string& item : unrecorded_) {
     if (!used.contains(item)) forget(item);
-    removed = true;
   }
   unrecorded_.clear();
-  return removed;
 }
 
 Placement RunFolder::linked(const PlannedNode& node, const ResultRecord& result,
                             const StoreReader& store) const {
   Placement placement{node.key, labels_hash(node), {}};
-  const auto add = [&](const fs::path& object, const std::string& name) {
-    PlacedFile file{place_of_file(node, name), {}};
-    link_file(object, path_ / file.path);
-    placement.files.push_back(std::move(file));
+  const auto add = [&](const fs::path& object, std::string place) {
+    make_folder((path_ / place).parent_path());
+    link_file(object, path_ / place);
+    placement.files.push_back({std::move(place), {}});
   };
-  for (const StoredFile& file : result.files) {
-    make_folder((path_ / place_of_file(node, file.name)).parent_path());
-    add(store.object(file.hash), file.name);
-  }
+  for (const StoredFile& file : result.files) add(store.object(file.hash), place_of_file(node, file.name));
   std::error_code code;
   const fs::path timing = store.timing(node.key);
-  if (node.node->published_in().empty() && fs::exists(timing, code)) {
-    make_folder(path_ / node.folder);
-    add(timing, kTiming);
-  }
+  if (fs::exists(timing, code)) add(timing, node.folder + "/timing.csv");
   return placement;
 }
 
 void RunFolder::place(const PlannedNode& node, const ResultRecord& result, const StoreReader& store) {
-  if (node.node->published_in().empty()) {
-    announce(node.folder);
-    coppice::remove_all(path_ / node.folder);
-  } else {
+  announce(node.folder);
+  coppice::remove_all(path_ / node.folder);
+  if (!node.node->published_in().empty()) {
     for (const StoredFile& file : result.files) announce(place_of_file(node, file.name));
   }
   Placement placement = linked(node, result, store);
@@ -187,6 +180,17 @@ void RunFolder::join_tables(const Plan& plan) {
   for (const auto& [id, nodes] : by_id) join_table(id, nodes);
 }
 
+bool RunFolder::tables_joined(const Plan& plan) const {
+  std::set<std::string_view> checked;
+  for (const PlannedNode& node : plan.nodes) {
+    if (node.node->labelled_tables().empty() || last(node) == nullptr) continue;
+    if (!checked.insert(node.id).second) continue;
+    const auto known = placements_.find(joined_table(node.id));
+    if (known == placements_.end() || !files_intact(known->second)) return false;
+  }
+  return true;
+}
+
 void RunFolder::join_table(const std::string& id, const std::vector<const PlannedNode*>& nodes) {
   const std::string file = joined_table(id);
   std::string all;
@@ -195,11 +199,8 @@ void RunFolder::join_table(const std::string& id, const std::vector<const Planne
     all.append(placement.key).append(placement.labels);
   }
   const auto known = placements_.find(file);
-  FileStamp stamp;
-  if (known != placements_.end() && known->second.key == content_hash(all) &&
-      stamp_file(path_ / file, stamp) && stamp == known->second.files.front().stamp) {
+  if (known != placements_.end() && known->second.key == content_hash(all) && files_intact(known->second))
     return;
-  }
   if (nodes.empty()) {
     if (known != placements_.end()) placements_.erase(known);
     forget(file);

@@ -33,14 +33,20 @@ class RunFolder {
   /// Makes the folder and takes it for this process. Throws ConfigError when another process has it, or when
   /// it cannot be written.
   void lock();
-  /// Removes what a run made and the plan does not want any more; what is in `keep` stays. Returns whether it
-  /// removed anything.
-  bool remove_all_but(const std::vector<std::string>& keep);
+  /// True when something lies here that a run made and that is not in `keep` (places of nodes and joined
+  /// tables).
+  bool has_more_than(const std::vector<std::string>& keep) const;
+  /// Removes that.
+  void remove_all_but(const std::vector<std::string>& keep);
+  /// The place of the table with all rows of a node.
+  static std::string joined_table(const std::string& id) { return "nodes/" + id + ".csv"; }
   /// Puts a result into its place, with labels where the node wants them. May be called by several threads.
   void place(const PlannedNode& node, const ResultRecord& result, const StoreReader& store);
   /// Writes nodes/<id>.csv for every node with labelled tables: the rows of all its points, items and
   /// replicates.
   void join_tables(const Plan& plan);
+  /// True when these tables are there as join_tables left them.
+  bool tables_joined(const Plan& plan) const;
   /// Records what lies here. Throws std::runtime_error.
   void save();
 
@@ -49,6 +55,7 @@ class RunFolder {
  private:
   void announce(const std::string& item);
   void forget(const std::string& item);
+  bool files_intact(const Placement& placement) const;
   Placement linked(const PlannedNode& node, const ResultRecord& result, const StoreReader& store) const;
   void join_table(const std::string& id, const std::vector<const PlannedNode*>& nodes);
 

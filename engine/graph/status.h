@@ -56,7 +56,15 @@ struct Explanation {
 std::vector<Explanation> explain(const Plan& plan, std::string_view id_or_name,
                                  const std::filesystem::path& out);
 
-/// A run folder as `runner status` shows it, also while the run goes on.
+/// How far one node of a run is.
+struct NodeState {
+  std::string name;
+  std::string id;
+  bool done = false;    ///< its result is there
+  std::string message;  ///< of its failure in the last run that tried it
+};
+
+/// A run folder as `runner status` and the page show it, also while the run goes on.
 struct RunStatus {
   std::string experiment;
   bool running = false;  ///< a process holds the folder
@@ -64,6 +72,7 @@ struct RunStatus {
   std::size_t finished = 0;
   std::size_t failed = 0;
   std::vector<std::string> messages;  ///< of failed nodes
+  std::vector<NodeState> states;      ///< of all nodes but definitions
 };
 
 /// Throws ConfigError when the folder is not one of a run.
