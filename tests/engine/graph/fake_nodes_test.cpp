@@ -1,5 +1,8 @@
+#include <chrono>
 #include <fstream>
+#include <thread>
 
+#include "engine/data/table_file.h"
 #include "engine/graph/node.h"
 #include "registry/text.h"
 #include "tests/engine/graph/experiments.h"
@@ -78,9 +81,13 @@ const Component<Node, Step> kStep("fake_step", "Makes data of data.", "no public
 struct Score : Node {
   References of;
   std::vector<std::string> makes() const override { return {"score"}; }
+  std::vector<std::string> labelled_tables() const override { return {"score.csv"}; }
   void run(NodeContext& context) const override {
-    std::ofstream(context.folder() / "score.txt")
-        << text_of(context.inputs("of").front().folder / "data.txt");
+    const std::string data = text_of(context.inputs("of").front().folder / "data.txt");
+    Table table;
+    table.columns = {{"value", ColumnInfo::Type::number, "", "First number of the data."}};
+    table.rows = {{std::stod(data)}};
+    write_table(context.folder() / "score.csv", table);
   }
   static Parameters<Score> parameters() {
     return node_parameters<Score>().references("of", &Score::of, "data", "What it scores.", true, true);
@@ -109,6 +116,41 @@ struct Report : Node {
   }
 };
 const Component<Node, Report> kReport("fake_report", "Lists scores.", "no publication");
+
+/// Works in units; each may be the last before a stop.
+struct Worker : Node {
+  std::int64_t units = 10;
+  std::string act = "work";
+
+  std::vector<std::string> makes() const override { return {"data"}; }
+  void run(NodeContext& context) const override {
+    std::int64_t sum = 0;
+    std::int64_t done = 0;
+    if (const std::optional<Archive> saved = context.checkpoint()) {
+      done = saved->get<std::vector<std::int64_t>>("state").at(0);
+      sum = saved->get<std::vector<std::int64_t>>("state").at(1);
+    }
+    for (; done < units; ++done) {
+      context.progress(done, units);
+      if (context.parallel().stop_requested()) {
+        Archive archive;
+        archive.put("state", std::vector<std::int64_t>{done, sum});
+        context.save_checkpoint(archive);
+        throw Interrupted();
+      }
+      if (act == "wait") std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      sum += done;
+      context.count("units", 1);
+    }
+    std::ofstream(context.folder() / "data.txt") << sum << "\n";
+  }
+  static Parameters<Worker> parameters() {
+    return node_parameters<Worker>()
+        .add("units", &Worker::units, "", "Units of work.")
+        .add("act", &Worker::act, "", "work or wait.");
+  }
+};
+const Component<Node, Worker> kWorker("fake_worker", "Works in units.", "no publication");
 
 }  // namespace
 
