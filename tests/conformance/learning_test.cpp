@@ -129,7 +129,7 @@ TEST_P(Solvers, TrainToTheSameBytesOnThreadsAndAfterARestart) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Solvers, testing::ValuesIn(Catalogue::instance().names("solver")),
-                         [](const auto& info) { return info.param; });
+                         component_name);
 
 // Configured policies as they stand; learned ones (whose arrays are missing) as some solver makes them,
 // above.
@@ -230,7 +230,7 @@ TEST_P(Approximators, ExactMaximumIsOne) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Approximators, testing::ValuesIn(Catalogue::instance().names("approximator")),
-                         [](const auto& info) { return info.param; });
+                         component_name);
 
 }  // namespace
 }  // namespace coppice

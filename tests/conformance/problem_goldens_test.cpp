@@ -95,7 +95,7 @@ TEST(GoldenFolder, HoldsTracesOfProblemsOnly) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ProblemGoldens, testing::ValuesIn(Catalogue::instance().names("problem")),
-                         [](const auto& info) { return info.param; });
+                         component_name);
 
 }  // namespace
 }  // namespace coppice

@@ -168,7 +168,7 @@ TEST_P(Problems, StepsAgreeWithEpisodesAndNothingFollowsATerminalState) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Problems, testing::ValuesIn(Catalogue::instance().names("problem")),
-                         [](const auto& info) { return info.param; });
+                         component_name);
 
 }  // namespace
 }  // namespace coppice

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -67,6 +69,11 @@ Sub<Interface> make_example(const std::string& name) {
   Sub<Interface> made = make<Interface>(example_element(*info), diagnostics);
   diagnostics.throw_if_any();
   return made;
+}
+
+/// Names a test after its component.
+inline std::string component_name(const testing::TestParamInfo<std::string>& test) {
+  return test.param;
 }
 
 }  // namespace coppice
