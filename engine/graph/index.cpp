@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 /// Raised when the tables change: an index of another format is made again.
 constexpr int kIndexFormat = 1;
-constexpr int kWaitWriting_ms = 1000;
+constexpr int kWaitWriting_ms = 300;
 constexpr int kWaitReading_ms = 100;
 
 constexpr const char* kTables =

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <stdexcept>
 
@@ -21,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kTimingFile = "timing.csv";
+constexpr std::int64_t kBurst_ns = 2'000'000'000;
 
 [[noreturn]] void fail(std::string_view action, const fs::path& path, std::string_view reason) {
   throw std::runtime_error(fmt::format("cannot {} {}: {}", action, path.string(), reason));
@@ -31,6 +33,15 @@ void lock(const OpenFile& file, const fs::path& path, int operation) {
   while (::flock(file.descriptor(), operation) != 0) {
     if (errno != EINTR) fail("lock", path, std::strerror(errno));
   }
+}
+
+/// Everything written below the folder, by whomever, reaches the disk.
+void sync_file_system(const OpenFile& inside, const fs::path& folder) {
+  if (::syncfs(inside.descriptor()) != 0) fail("write", folder, std::strerror(errno));
+}
+
+std::int64_t steady_ns() {
+  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
 }
 
 /// Removes the folders in tmp whose owner is dead: their locks are free.
@@ -89,6 +100,7 @@ Store::Store(fs::path path) : StoreReader(std::move(path)) {
 }
 
 Store::~Store() {
+  if (unsynced_) ::syncfs(in_use_->descriptor());
   std::error_code ignored;  // the next Store removes what is left
   fs::remove_all(temporary_, ignored);
 }
@@ -122,21 +134,11 @@ void Store::abandon(const fs::path& made) {
   coppice::remove_all(made);
 }
 
-void Store::make_parent(const fs::path& file) {
-  const fs::path parent = file.parent_path();
-  const std::lock_guard guard(mutex_);
-  if (parents_.contains(parent)) return;
-  make_folder(parent);
-  sync_folder(parent.parent_path());
-  parents_.insert(parent);
-}
-
 StoredFile Store::keep(const fs::path& file, const std::string& name) {
   StoredFile kept{.name = name, .size = stamp_of(file).size, .hash = file_hash(file)};
   const fs::path place = object(kept.hash);
-  make_parent(place);
+  make_folder(place.parent_path());
   if (::chmod(file.c_str(), 0444) != 0) fail("store", file, std::strerror(errno));
-  sync_file(file);
   FileStamp there;
   const bool damaged = stamp_file(place.native(), there) && file_hash(place) != kept.hash;
   if (damaged || !link_unless_there(file, place)) rename_file(file, place);
@@ -144,40 +146,44 @@ StoredFile Store::keep(const fs::path& file, const std::string& name) {
   return kept;
 }
 
-void Store::keep_timing(const fs::path& file, const std::string& key) {
-  const fs::path place = timing(key);
-  make_parent(place);
-  sync_file(file);
-  rename_file(file, place);
-  sync_folder(place.parent_path());
+/// True for the caller that has to bring everything to the disk now.
+bool Store::sync_is_due() {
+  std::int64_t last = synced_ns_;
+  const std::int64_t now = steady_ns();
+  if (last != 0 && now - last < kBurst_ns) return false;
+  return synced_ns_.compare_exchange_strong(last, now);
 }
 
-void Store::acknowledge(const ResultRecord& result) {
+void Store::acknowledge(const ResultRecord& result, bool durably) {
   const fs::path written = temporary("record");
   {
     const OpenFile output(written, O_WRONLY | O_CREAT | O_EXCL);
     output.write(record_text(result));
-    output.sync();
+    if (durably) output.sync();
   }
   const fs::path place = record(result.key);
-  make_parent(place);
+  make_folder(place.parent_path());
   rename_file(written, place);
-  sync_folder(place.parent_path());
+  if (durably) sync_folder(place.parent_path());
 }
 
 ResultRecord Store::commit(const fs::path& made, ResultRecord result) {
   result.files.clear();
-  std::set<fs::path> changed;
   for (const std::string& name : files_below(made)) {
-    if (name == kTimingFile) {
-      keep_timing(made / name, result.key);
-    } else {
+    if (name != kTimingFile) {
       result.files.push_back(keep(made / name, name));
-      changed.insert(object(result.files.back().hash).parent_path());
+    } else {
+      make_folder(timing(result.key).parent_path());
+      rename_file(made / name, timing(result.key));
     }
   }
-  for (const fs::path& folder_of_objects : changed) sync_folder(folder_of_objects);
-  acknowledge(result);
+  const bool durably = sync_is_due();
+  if (durably) {
+    unsynced_ = false;
+    sync_file_system(*in_use_, folder());
+  }
+  acknowledge(result, durably);
+  if (!durably) unsynced_ = true;
   coppice::remove_all(checkpoint(result.key));
   coppice::remove_all(made);
   return result;

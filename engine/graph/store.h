@@ -4,9 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -63,6 +61,10 @@ class StoreReader {
 /// A store to write to. A result is first written in full, then acknowledged by renaming its record into
 /// place; a process killed at any instant loses nothing acknowledged. Several processes may use one store at
 /// once, and several threads one Store.
+///
+/// Results reach the disk before they are acknowledged too, except in a burst of them, which reaches it every
+/// two seconds: waiting for the disk costs more than short nodes take. A loss of power in a burst costs what
+/// came since; find() tells what is not whole.
 class Store : public StoreReader {
  public:
   /// Opens or makes the store, and removes what killed processes left in tmp. Throws ConfigError with the
@@ -86,17 +88,16 @@ class Store : public StoreReader {
  private:
   void claim_temporary_folder();
   std::filesystem::path temporary(const std::string& name);
-  void make_parent(const std::filesystem::path& file);
   StoredFile keep(const std::filesystem::path& file, const std::string& name);
-  void keep_timing(const std::filesystem::path& file, const std::string& key);
-  void acknowledge(const ResultRecord& record);
+  bool sync_is_due();
+  void acknowledge(const ResultRecord& record, bool durably);
 
   std::unique_ptr<OpenFile> in_use_;  // shared lock: no garbage is collected meanwhile
   std::filesystem::path temporary_;
-  std::unique_ptr<OpenFile> claim_;  // lock of temporary_: its owner lives
-  std::atomic<unsigned> count_{0};   // names within temporary_
-  std::mutex mutex_;
-  std::set<std::filesystem::path> parents_;  // known to outlive a loss of power; guarded by mutex_
+  std::unique_ptr<OpenFile> claim_;         // lock of temporary_: its owner lives
+  std::atomic<unsigned> count_{0};          // names within temporary_
+  std::atomic<std::int64_t> synced_ns_{0};  // by the steady clock
+  std::atomic<bool> unsynced_{false};
 };
 
 /// What collect_garbage removed.
