@@ -64,6 +64,20 @@ std::string parameter_rows(const std::vector<const ParameterInfo*>& parameters) 
   return text + "\n";
 }
 
+/// "arg", or "arg in include" where another <arg> stands elsewhere.
+std::string title(const LanguageElement& element) {
+  return element.inside.empty() ? element.name : element.name + " in " + join(element.inside);
+}
+
+/// A link to the section of that title; the anchor is made as Markdown viewers make it.
+std::string link(const LanguageElement& element) {
+  std::string anchor;
+  for (const char c : title(element)) {
+    if (c != ',') anchor += c == ' ' ? '-' : c;
+  }
+  return fmt::format("[`{}`](#{})", element.name, anchor);
+}
+
 class Manual {
  public:
   Manual(const Catalogue& catalogue, const Language& language) : catalogue_(catalogue), language_(language) {}
@@ -107,7 +121,10 @@ class Manual {
 
   std::string element_list() const {
     std::vector<std::string> names = {code(language_.root.name)};
-    for (const LanguageElement& element : language_.elements) names.push_back(code(element.name));
+    for (const LanguageElement& element : language_.elements) {
+      if (std::find(names.begin(), names.end(), code(element.name)) == names.end())
+        names.push_back(code(element.name));
+    }
     return join(names);
   }
 
@@ -170,7 +187,8 @@ class Manual {
   ManualPage language_page() const {
     std::string text = std::string(kGenerated) + "# The elements of the language\n\n";
     if (!language_.common.empty()) {
-      text += "Every element, of the language or not, may have:\n\n" + attribute_rows(language_.common);
+      text += "Every element but the root, of the language or not, may have:\n\n" +
+              attribute_rows(language_.common);
     }
     text += element_section(language_.root);
     for (const LanguageElement& element : language_.elements) text += element_section(element);
@@ -188,15 +206,17 @@ class Manual {
   }
 
   std::string element_section(const LanguageElement& element) const {
-    std::string text =
-        fmt::format("## {}\n\n{}\n\n", element.name, plain(element.doc)) + attribute_rows(element.attributes);
+    std::string text = fmt::format("## {}\n\n{}\n\n", title(element), plain(element.doc)) +
+                       attribute_rows(element.attributes);
     if (element.free_attributes) text += "Further attributes have any names.\n\n";
     std::vector<std::string> inside;
-    for (const std::string& child : element.children) inside.push_back(fmt::format("[`{0}`](#{0})", child));
+    for (const std::string& child : element.children) {
+      inside.push_back(link(find_element(language_, child, element.name)));
+    }
     if (&element == &language_.root) {
       inside.push_back(fmt::format("[{0}]({0}.md)", language_.root_interface));
       for (const LanguageElement& other : language_.elements) {
-        if (other.in_root) inside.push_back(fmt::format("[`{0}`](#{0})", other.name));
+        if (other.in_root) inside.push_back(link(other));
       }
     }
     if (element.content == LanguageContent::surrounding) inside.emplace_back("whatever may stand around it");

@@ -57,7 +57,7 @@ class SchemaWriter {
     xml_.documentation(language_.root.doc);
     const auto type = xml_.open("xs:complexType");
     write_content("content.root");
-    write_attributes(language_.root.attributes);
+    for (const LanguageAttribute& attribute : language_.root.attributes) write_attribute(attribute);
   }
 
   void write_content(const std::string& group) {
@@ -139,10 +139,13 @@ class SchemaWriter {
     xml_.documentation(catalogue_.find(interface, name)->doc);
   }
 
+  static std::string type_name(const LanguageElement& element) {
+    return "language." + (element.inside.empty() ? "" : element.inside.front() + ".") + element.name;
+  }
+
   void write_language_element(const LanguageElement& element, const std::string& group) {
     if (element.content != LanguageContent::surrounding) {
-      const auto open =
-          xml_.open("xs:element", {{"name", element.name}, {"type", "language." + element.name}});
+      const auto open = xml_.open("xs:element", {{"name", element.name}, {"type", type_name(element)}});
       xml_.documentation(element.doc);
       return;
     }
@@ -158,31 +161,25 @@ class SchemaWriter {
     if (element.free_attributes) xml_.leaf("xs:anyAttribute", {{"processContents", "skip"}});
   }
 
-  const LanguageElement& language_element(const std::string& name) const {
-    for (const LanguageElement& element : language_.elements) {
-      if (element.name == name) return element;
-    }
-    throw std::logic_error("schema: the language has no element <" + name + ">");
-  }
-
   void write_language_types() {
     for (const LanguageElement& element : language_.elements) {
       if (element.content == LanguageContent::surrounding) continue;
-      const auto type = xml_.open("xs:complexType", {{"name", "language." + element.name}});
+      const auto type = xml_.open("xs:complexType", {{"name", type_name(element)}});
       if (element.content == LanguageContent::anything) {
         const auto sequence = xml_.open("xs:sequence");
         xml_.leaf("xs:any", {{"minOccurs", "0"}, {"maxOccurs", "unbounded"}, {"processContents", "skip"}});
       } else if (!element.children.empty()) {
-        write_content("inside." + element.name);
+        write_content("inside." + type_name(element));
       }
       write_language_attributes(element);
     }
     for (const LanguageElement& element : language_.elements) {
       if (element.children.empty()) continue;
-      const std::string name = "inside." + element.name;
+      const std::string name = "inside." + type_name(element);
       const auto group = xml_.open("xs:group", {{"name", name}});
       const auto choice = xml_.open("xs:choice");
-      for (const std::string& child : element.children) write_language_element(language_element(child), name);
+      for (const std::string& child : element.children)
+        write_language_element(find_element(language_, child, element.name), name);
     }
   }
 

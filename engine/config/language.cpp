@@ -1,6 +1,6 @@
 #include "engine/config/language.h"
 
-#include <algorithm>
+#include <utility>
 
 #include "engine/config/experiment.h"
 
@@ -21,48 +21,16 @@ LanguageElement converted(const ControlElement& control) {
     }
   }
   element.children = control.children;
+  element.inside = control.inside;
   if (std::erase(element.children, "*") > 0) {
     element.content = control.name == "group" ? LanguageContent::surrounding : LanguageContent::anything;
   }
   return element;
 }
 
-/// "In <grid> and <zip>: ..." for what stands in certain elements only.
-std::string located(const ControlElement& control, const std::string& doc) {
-  std::string text;
-  for (const std::string& parent : control.inside) {
-    text += text.empty() ? "In <" : (&parent == &control.inside.back() ? "> and <" : ">, <");
-    text += parent;
-  }
-  return text.empty() ? doc : text + ">: " + doc;
-}
-
-/// XSD knows one declaration of a name: an attribute that one of two needs and the other lacks is optional in
-/// both together.
-void merge(LanguageElement& into, const ControlElement& control) {
-  LanguageElement other = converted(control);
-  into.doc += ' ' + located(control, other.doc);
-  for (LanguageAttribute& attribute : into.attributes) {
-    const auto same =
-        std::find_if(other.attributes.begin(), other.attributes.end(),
-                     [&](const LanguageAttribute& known) { return known.name == attribute.name; });
-    attribute.required = attribute.required && same != other.attributes.end() && same->required;
-    if (same == other.attributes.end()) continue;
-    if (same->doc != attribute.doc) attribute.doc += ' ' + located(control, same->doc);
-    other.attributes.erase(same);
-  }
-  for (LanguageAttribute& attribute : other.attributes) {
-    into.attributes.push_back({attribute.name, located(control, attribute.doc), false});
-  }
-}
-
-/// The declarations in one list: those that hold anywhere come before those for certain places.
-std::vector<const ControlElement*> in_order() {
-  std::vector<const ControlElement*> all;
-  for (const ControlElement& control : control_elements()) all.push_back(&control);
-  std::stable_partition(all.begin() + 1, all.end(),
-                        [](const ControlElement* control) { return control->inside.empty(); });
-  return all;
+/// Definitions that stand at the top level of a file.
+bool is_global(const std::string& name) {
+  return name == "arg" || name == "sweep" || name == "macro";
 }
 
 Language make_language() {
@@ -79,17 +47,11 @@ Language make_language() {
       {"optimizer", "Looks for the best parameters by trying them (black-box optimization)."},
       {"solver", "Learns a policy for a problem."}};
   language.root = converted(control_elements().front());
-  for (const ControlElement* control : in_order()) {
-    if (control->name == language.root.name) continue;
-    const auto same = std::find_if(language.elements.begin(), language.elements.end(),
-                                   [&](const LanguageElement& known) { return known.name == control->name; });
-    if (same != language.elements.end()) {
-      merge(*same, *control);
-      continue;
-    }
-    LanguageElement element = converted(*control);
-    element.doc = located(*control, element.doc);
-    element.in_root = element.in_components = control->inside.empty();
+  for (const ControlElement& control : control_elements()) {
+    if (control.name == language.root.name) continue;
+    LanguageElement element = converted(control);
+    element.in_root = control.inside.empty();
+    element.in_components = control.inside.empty() && !is_global(control.name);
     language.elements.push_back(std::move(element));
   }
   return language;

@@ -126,25 +126,41 @@ inline const Component<Shape, Heap> kHeap("heap", "Several shapes.", "no publica
 inline const Component<Shape, Circle> kCircle("circle", "A circle.", "no publication", 2);
 inline const Component<Drawing, Sheet> kSheet("sheet", "A sheet.", "Doe, 2001");
 
-/// A language whose root holds drawings.
+inline LanguageElement language_element(std::string name, std::vector<LanguageAttribute> attributes = {}) {
+  LanguageElement element;
+  element.name = std::move(name);
+  element.doc = "Explains " + element.name + ".";
+  element.attributes = std::move(attributes);
+  return element;
+}
+
+/// A language whose root holds drawings; <list> is declared twice, for two parents.
 inline Language drawing_language() {
   Language language;
-  language.root.name = "album";
-  language.root.doc = "Drawings.";
-  language.root.attributes = {{"version", "Of the language.", true}, {"title", "On the cover.", false}};
+  language.root =
+      language_element("album", {{"version", "Of the language.", true}, {"title", "Shown.", false}});
   language.root_interface = "test_drawing";
   language.common = {{"if", "The element counts only when this is true.", false}};
-  LanguageElement group{"group", "Elements together.",         {},   false,
-                        {},      LanguageContent::surrounding, true, true};
-  LanguageElement macro{"macro", "A text to use again.", {{"name", "Its name.", true}}, false, {}, {}, true,
-                        false};
+  LanguageElement group = language_element("group");
+  group.content = LanguageContent::surrounding;
+  group.in_root = group.in_components = true;
+  LanguageElement macro = language_element("macro", {{"name", "Its name.", true}});
   macro.content = LanguageContent::anything;
-  LanguageElement call{"call", "Uses a macro.", {{"macro", "Which.", true}}, true, {}, {}, true, true};
+  macro.in_root = true;
+  LanguageElement call = language_element("call", {{"macro", "Which.", true}});
   call.content = LanguageContent::anything;
-  LanguageElement sweep{
-      "sweep", "Values to run over.", {{"id", "Its name.", true}}, false, {"list"}, {}, true, false};
-  LanguageElement list{"list", "Values.", {{"values", "All of them.", true}}, false, {}, {}, false, false};
-  language.elements = {group, macro, call, sweep, list};
+  call.free_attributes = call.in_root = call.in_components = true;
+  LanguageElement sweep = language_element("sweep", {{"id", "Its name.", true}});
+  sweep.children = {"list", "zip"};
+  sweep.in_root = true;
+  LanguageElement list = language_element("list", {{"values", "All of them.", true}});
+  list.inside = {"sweep"};
+  LanguageElement zip = language_element("zip");
+  zip.children = {"list"};
+  zip.inside = {"sweep"};
+  LanguageElement columns = language_element("list", {{"columns", "Side by side.", true}});
+  columns.inside = {"zip"};
+  language.elements = {group, macro, call, sweep, list, zip, columns};
   language.interfaces["test_shape"] = "What can be drawn.";
   return language;
 }

@@ -49,9 +49,11 @@ TEST(Manual, TellsEveryParameterWithBoundsDefaultAndDoc) {
 
 TEST(Manual, TellsTheLanguage) {
   const std::string text = page("language.md");
-  EXPECT_NE(text.find("## sweep\n\nValues to run over.\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("| `values` | required | All of them. |"), std::string::npos) << text;
-  EXPECT_NE(text.find("Inside: [`list`](#list)."), std::string::npos) << text;
+  EXPECT_NE(text.find("## sweep\n\nExplains sweep.\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("## list in sweep\n\nExplains list.\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("| `columns` | required | Side by side. |"), std::string::npos) << text;
+  EXPECT_NE(text.find("Inside: [`list`](#list-in-sweep), [`zip`](#zip-in-sweep)."), std::string::npos)
+      << text;
 }
 
 TEST(Manual, ListsEveryUnit) {
@@ -72,7 +74,9 @@ TEST(Manual, LinksLeadSomewhere) {
           std::find_if(all.begin(), all.end(), [&](const ManualPage& p) { return p.file == file; });
       ASSERT_NE(to, all.end()) << link;
       if (hash == std::string::npos) continue;
-      EXPECT_NE(to->text.find("\n## " + link.substr(hash + 1) + "\n"), std::string::npos) << link;
+      std::string title = link.substr(hash + 1);
+      std::replace(title.begin(), title.end(), '-', ' ');
+      EXPECT_NE(to->text.find("\n## " + title + "\n"), std::string::npos) << link;
     }
   }
 }

@@ -80,7 +80,7 @@ TEST_F(Schema, AcceptsWhatTheLanguageAllows) {
 <album xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:noNamespaceSchemaLocation="album.xsd"
        version="1" title="x">
   <macro name="m"><anything at="all"><sheet/></anything></macro>
-  <sweep id="s"><list values="1, 2"/></sweep>
+  <sweep id="s"><list values="1, 2"/><zip><list columns="3" if="1"/></zip></sweep>
   <sheet id="a" framed="${x}" if="${y}"><box width="3 cm"/><pen if="0"><brush/></pen></sheet>
   <group if="1">
     <sheet id="b">
@@ -98,6 +98,9 @@ TEST_F(Schema, RefusesWhatReadingRefuses) {
   refuses("<album version=\"1\"><sheets id=\"a\"/></album>");
   refuses("<album version=\"1\"><sheet/></album>");
   refuses("<album version=\"1\"><box/></album>");
+  refuses("<album version=\"1\" if=\"1\"/>");
+  refuses("<album version=\"1\"><sweep id=\"s\"><list columns=\"1\"/></sweep></album>");
+  refuses("<album version=\"1\"><sweep id=\"s\"><zip><list values=\"1\"/></zip></sweep></album>");
   refuses("<album version=\"1\"><list values=\"1\"/></album>");
   refuses("<album version=\"1\"><sweep id=\"s\"><sheet id=\"a\"/></sweep></album>");
   refuses("<album version=\"1\"><group name=\"x\"/></album>");
@@ -152,8 +155,7 @@ TEST_F(Schema, RefusesClashingNames) {
   language.common.push_back({"framed", "Clashes with the sheet's.", false});
   EXPECT_THROW(xml_schema(drawings(), language), std::logic_error);
   language = test::drawing_language();
-  language.elements.back().name = "sheet";
-  language.elements.back().in_root = true;
+  language.elements.front().name = "sheet";
   EXPECT_THROW(xml_schema(drawings(), language), std::logic_error);
 }
 
