@@ -37,9 +37,11 @@ void check_attributes(const Element& element, const ControlElement& declaration,
   if (declaration.name != "experiment") known.insert(known.end(), {"if", "unless"});
   for (const Attribute& attribute : element.attributes) {
     if (contains(known, attribute.name)) continue;
-    diagnostics.error(traced(attribute.name_place, trace),
-                      fmt::format("<{}> has no attribute '{}'", element.name, attribute.name),
-                      suggestion(attribute.name, known));
+    const bool as_in_ros = declaration.name == "arg" && attribute.name == "value";
+    diagnostics.error(
+        traced(attribute.name_place, trace),
+        fmt::format("<{}> has no attribute '{}'", element.name, attribute.name),
+        as_in_ros ? "its value is the 'default'; a constant is a <let>" : suggestion(attribute.name, known));
   }
 }
 

@@ -39,37 +39,27 @@ std::vector<std::string> way(const std::string& name, const std::string& target,
   return {};
 }
 
-/// The error of a name that is defined, but not before its use: by itself, in a circle, or later. `use` is
-/// the attribute that uses it.
-std::optional<ExpressionError> wrong_order(const std::string& name, std::size_t offset, const Attribute& use,
-                                           const std::vector<const Element*>& definitions) {
+/// The circle in which the definition that has the attribute `use` needs `name`, which needs it; empty
+/// without one.
+std::vector<std::string> circle(const std::string& name, const Attribute& use,
+                                const std::vector<const Element*>& definitions) {
   for (const Element* definition : definitions) {
     if (value_of(*definition) != &use) continue;
     std::set<std::string> visited;
     const std::string own(definition->get("name"));
-    const std::vector<std::string> circle = way(name, own, definitions, visited);
-    if (circle.empty()) continue;
-    const std::string message = fmt::format("'{}' is defined by itself", own);
-    if (own == name) return ExpressionError(offset, name.size(), message);
-    return ExpressionError(offset, name.size(),
-                           fmt::format("{}, in a circle: {} -> {}", message, own, join(circle, " -> ")));
+    std::vector<std::string> names = way(name, own, definitions, visited);
+    if (names.empty()) continue;
+    names.insert(names.begin(), own);
+    return names;
   }
-  for (const Element* definition : definitions) {
-    if (definition->get("name") != name) continue;
-    return ExpressionError(
-        offset, name.size(), fmt::format("'{}' has no value here", name),
-        fmt::format("it is defined at {}:{}; a definition stands before its use, where its "
-                    "conditions hold",
-                    definition->place.file->path, definition->place.line));
-  }
-  return std::nullopt;
+  return {};
 }
 
 }  // namespace
 
 class Evaluator::ContextNames : public Names {
  public:
-  ContextNames(const Evaluator& evaluator, const Attribute& attribute, const Context& context)
+  ContextNames(Evaluator& evaluator, const Attribute& attribute, const Context& context)
       : evaluator_(evaluator), attribute_(attribute), context_(context) {}
 
   const Value* find(std::string_view name) const override {
@@ -88,7 +78,7 @@ class Evaluator::ContextNames : public Names {
   }
 
  private:
-  const Evaluator& evaluator_;
+  Evaluator& evaluator_;
   const Attribute& attribute_;
   const Context& context_;
 };
@@ -141,7 +131,7 @@ void Evaluator::report(const Attribute& attribute, const Context& context,
 }
 
 ExpressionError Evaluator::unknown_name(std::string_view name, std::size_t offset, const Attribute& attribute,
-                                        const Context& context) const {
+                                        const Context& context) {
   const std::string text(name);
   if (const FunctionInfo* function = find_function(name)) {
     return {offset, name.size(), fmt::format("'{}' is a function", name),
@@ -154,8 +144,21 @@ ExpressionError Evaluator::unknown_name(std::string_view name, std::size_t offse
             fmt::format("it has one inside a node with over=\"{}\", but not in the node's id",
                         *column->second.begin())};
   }
-  if (std::optional<ExpressionError> order = wrong_order(text, offset, attribute, files_.definitions()))
-    return *order;
+  const std::vector<const Element*> definitions = files_.definitions();
+  if (const std::vector<std::string> names = circle(text, attribute, definitions); !names.empty()) {
+    if (circular_.contains(names.front())) throw AlreadyReported();
+    circular_.insert(names.begin(), names.end());
+    std::string message = fmt::format("'{}' is defined by itself", names.front());
+    if (names.size() > 2) message += ", in a circle: " + join(names, " -> ");
+    return {offset, name.size(), message};
+  }
+  for (const Element* definition : definitions) {
+    if (definition->get("name") != name) continue;
+    return {
+        offset, name.size(), fmt::format("'{}' has no value here", name),
+        fmt::format("it is defined at {}:{}; a definition stands before its use, where its conditions hold",
+                    definition->place.file->path, definition->place.line)};
+  }
   std::string hint = suggestion(name, context.scope->names());
   if (!hint.starts_with("did you mean")) {
     hint += fmt::format("{}a text stands in single quotes: '{}'", hint.empty() ? "" : "; ", name);

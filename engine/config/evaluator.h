@@ -40,7 +40,7 @@ class Evaluator {
   const TextTemplate& compiled(const Attribute& attribute);
   void report(const Attribute& attribute, const Context& context, const std::vector<ExpressionError>& errors);
   ExpressionError unknown_name(std::string_view name, std::size_t offset, const Attribute& attribute,
-                               const Context& context) const;
+                               const Context& context);
 
   const Files& files_;
   Diagnostics& diagnostics_;
@@ -48,6 +48,7 @@ class Evaluator {
       compiled_;  // attributes of loaded files, which stay in place
   std::unordered_map<const Attribute*, int> failures_;
   std::map<std::string, std::set<std::string>> columns_;
+  std::set<std::string> circular_;  // names of the definitions whose circle was reported
 };
 
 /// A place with the way that expansion took to it.

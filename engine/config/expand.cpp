@@ -25,10 +25,10 @@ class Merger {
   void add(Expansion pass, const std::vector<GivenArgument*>& swept, Diagnostics& diagnostics) {
     for (SweepPoints& sweep : pass.sweeps) add_sweep(std::move(sweep), diagnostics);
     Point combination;
+    values_.resize(swept.size());
     for (std::size_t i = 0; i < swept.size(); ++i) {
       const std::string& name = swept[i]->override.name;
       combination.emplace_back(name, pass.arguments.at(name));
-      values_.resize(swept.size());
       if (std::find(values_[i].begin(), values_[i].end(), combination.back().second) == values_[i].end()) {
         values_[i].push_back(combination.back().second);
       }
@@ -43,6 +43,7 @@ class Merger {
       for (NodeElement& node : group) experiment_.nodes.push_back(std::move(node));
     }
     std::vector<SweepPoints> implicit;
+    values_.resize(swept.size());
     for (std::size_t i = 0; i < swept.size(); ++i) {
       implicit.push_back(implicit_sweep(*swept[i], values_[i], diagnostics));
       experiment_.arguments[swept[i]->override.name] = swept[i]->override.value;
@@ -113,33 +114,45 @@ class Merger {
   std::vector<std::vector<std::string>> values_;  // of each swept argument, as worked out
 };
 
+/// Reports what keeps the swept arguments from being swept; false then.
+bool can_sweep(const std::vector<GivenArgument*>& now, const std::vector<GivenArgument*>& at_first,
+               const Expansion& pass, Diagnostics& diagnostics) {
+  std::size_t combinations = 1;
+  for (const GivenArgument* argument : now) {
+    const Override& override = argument->override;
+    combinations *= argument->values.size();
+    if (combinations > kMostPasses) {
+      diagnostics.error(override.place,
+                        fmt::format("the swept arguments have more than {} combinations", kMostPasses));
+      return false;
+    }
+    const bool always = std::find(at_first.begin(), at_first.end(), argument) != at_first.end() &&
+                        pass.arguments.contains(override.name);
+    if (always) continue;
+    diagnostics.error(override.place,
+                      fmt::format("the argument '{}' cannot be swept: it is declared for some values of "
+                                  "another swept argument only",
+                                  override.name));
+    return false;
+  }
+  return true;
+}
+
 void expand_passes(config::Files& files, const config::LoadedFile& file, std::uint64_t root_seed,
                    const ExpandOptions& options, ExperimentConfig& experiment, Diagnostics& diagnostics) {
   GivenArguments given(options.overrides);
   Merger merger(experiment);
-  std::size_t swept = 0;
-  for (std::size_t passes = 0; passes == 0 || given.next_combination(); ++passes) {
+  std::vector<GivenArgument*> swept;
+  for (bool first = true; first || given.next_combination(); first = false) {
     Expansion pass = config::Expander(files, given, root_seed, experiment.seed, diagnostics).run(file);
-    std::size_t combinations = 1;
-    for (const GivenArgument* argument : given.swept()) combinations *= argument->values.size();
-    if (combinations > kMostPasses) {
-      diagnostics.error(given.swept().back()->override.place,
-                        fmt::format("the swept arguments have {} combinations, at most {} are possible",
-                                    combinations, kMostPasses));
+    if (first) swept = given.swept();
+    if (!can_sweep(given.swept(), swept, pass, diagnostics)) {
+      experiment.complete = false;
       break;
     }
-    if (passes > 0 && given.swept().size() != swept) {
-      diagnostics.error(
-          given.swept().back()->override.place,
-          fmt::format("the argument '{}' cannot be swept: it is declared for some values of another "
-                      "swept argument only",
-                      given.swept().back()->override.name));
-      break;
-    }
-    swept = given.swept().size();
-    merger.add(std::move(pass), given.swept(), diagnostics);
+    merger.add(std::move(pass), swept, diagnostics);
   }
-  merger.finish(given.swept(), diagnostics);
+  merger.finish(swept, diagnostics);
   experiment.overrides = given.taken();
 }
 

@@ -56,12 +56,16 @@ void Expander::define(const Attribute& name, std::optional<Value> value, const E
 }
 
 void Expander::argument(const Element& element, const Context& context) {
+  const std::size_t before = diagnostics_.size();
   if (!global_only(element, context) || !check(element, "", context)) return;
+  const bool sound = diagnostics_.size() == before;
   const Attribute& name = *element.find("name");
   for (PassedArguments* passed = context.passed; passed != nullptr; passed = passed->outer) {
     passed->declared.push_back(name.value);
   }
-  std::optional<Value> value = argument_value(element, name.value, context);
+  std::optional<Value> value;
+  // What looks like a missing default may be the attribute that was misspelt.
+  if (sound || element.find("default") != nullptr) value = argument_value(element, name.value, context);
   if (!value) result_.complete = false;
   result_.arguments.emplace(name.value, value ? value->to_text() : "");
   define(name, std::move(value), element, "argument", context);

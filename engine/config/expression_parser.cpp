@@ -52,6 +52,11 @@ class Parser {
     if (!accept(symbol)) throw expected(fmt::format("'{}'", symbol));
   }
 
+  /// Between the items of a list; a comma may stand before the end, too.
+  void separator(std::string_view end) {
+    if (!is(end) && !accept(",")) throw expected(fmt::format("',' or '{}'", end));
+  }
+
   ExpressionError expected(const std::string& what) const {
     if (is("=")) {
       return {token_.offset, 1, "'=' has no place here", "'==' compares; key=value stands only in pick(...)"};
@@ -217,7 +222,7 @@ class Parser {
     auto made = node(Kind::list, take());
     while (!is("]")) {
       made->children.push_back(conditional());
-      if (!is("]")) require(",");
+      separator("]");
     }
     take();
     return made;
@@ -250,7 +255,7 @@ class Parser {
     require("(");
     while (!is(")")) {
       argument(*function, *made);
-      if (!is(")")) require(",");
+      separator(")");
     }
     take();
     const std::size_t count = made->children.size();
