@@ -159,8 +159,8 @@ const Command<PlanCommand> kPlan(
          "earlier runs in the same output folder, and left out where there is no evidence.",
      .examples = {
          {"runner plan configs/quickstart.xml", "What would run, and why."},
-         {"runner plan configs/quickstart.xml --force train --json",
-          "The same as JSON, if the node 'train' were run again."},
+         {"runner plan configs/quickstart.xml --force fpf_pwl --json",
+          "The same as JSON, if the node 'fpf_pwl' were run again."},
          {"runner plan configs/quickstart.xml --dot", "The graph of the experiment, for Graphviz."}}});
 
 }  // namespace

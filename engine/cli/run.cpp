@@ -93,7 +93,7 @@ const Command<Run> kRun(
      .examples = {{"runner configs/quickstart.xml", "Runs one experiment; results go to out/quickstart."},
                   {"runner run configs/quickstart.xml --out results -j 1 --progress plain",
                    "On one core, into another folder, with one line per finished node."},
-                  {"runner configs/thesis/double_integrator.xml scale:=ci --seed 7",
+                  {"runner configs/quickstart.xml replicates:=2 --seed 7",
                    "Sets an argument of the config, and the root seed."}}});
 
 }  // namespace

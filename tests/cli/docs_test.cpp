@@ -1,0 +1,125 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/cli/process.h"
+
+// Every command that the pages for users show is executed: lines "$ command" of ```console blocks, one page
+// in one folder, and the examples of the commands' help. What a page shows as output must come out; a line
+// with "..." stands for anything.
+
+namespace coppice {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kSource = COPPICE_SOURCE_DIR;
+
+struct Step {
+  std::string command;
+  int status = 0;
+  std::vector<std::string> shown;
+};
+
+std::vector<Step> steps_of(const fs::path& page) {
+  std::vector<Step> steps;
+  bool inside = false;
+  for (const std::string& line : lines(TemporaryFolder::read(page))) {
+    if (line.starts_with("```")) {
+      inside = line == "```console";
+    } else if (inside && line.starts_with("$ ")) {
+      Step step;
+      const std::size_t comment = line.find("# fails with ");
+      step.command = line.substr(2, comment == std::string::npos ? comment : comment - 2);
+      if (comment != std::string::npos) step.status = std::stoi(line.substr(comment + 13));
+      steps.push_back(std::move(step));
+    } else if (inside && !steps.empty()) {
+      steps.back().shown.push_back(line);
+    }
+  }
+  return steps;
+}
+
+/// A folder as users have it: the shipped configs, and a home of their own.
+struct Home {
+  TemporaryFolder folder;
+  Home() {
+    fs::copy(kSource / "configs", folder / "configs", fs::copy_options::recursive);
+    fs::create_directories(folder / ".zfunc");
+    fs::create_directories(folder / ".config/fish/completions");
+  }
+  Ended run(const std::string& command) const {
+    return shell("export HOME=" + folder.path().string() + "\n" + command, folder.path());
+  }
+};
+
+std::vector<fs::path> pages() {
+  std::vector<fs::path> all = {kSource / "README.md"};
+  for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "docs")) {
+    if (entry.path().extension() == ".md") all.push_back(entry.path());
+  }
+  return all;
+}
+
+TEST(Docs, CommandsOnPagesDoWhatThePagesShow) {
+  std::size_t executed = 0;
+  for (const fs::path& page : pages()) {
+    const std::vector<Step> steps = steps_of(page);
+    if (steps.empty()) continue;
+    const Home home;
+    for (const Step& step : steps) {
+      if (step.command.starts_with("make ") || step.command.starts_with("cmake "))
+        continue;  // the build's own tests
+      SCOPED_TRACE(page.filename().string() + ": " + step.command);
+      const std::string program = "build/runner ";
+      const std::string command =
+          step.command.starts_with(program) ? "runner " + step.command.substr(program.size()) : step.command;
+      const Ended ended = home.run(command);
+      EXPECT_EQ(ended.status, step.status) << ended.err;
+      for (const std::string& line : step.shown) {
+        if (contains(line, "...")) continue;
+        EXPECT_TRUE(contains(ended.out + ended.err, line)) << "not shown: " << line << "\n"
+                                                           << ended.out << ended.err;
+      }
+      ++executed;
+    }
+  }
+  EXPECT_GE(executed, 15U);
+}
+
+TEST(Docs, ExamplesInHelpWork) {
+  const Home home;
+  ASSERT_EQ(home.run("runner configs/quickstart.xml").status, 0);
+  ASSERT_EQ(home.run("cp $(find out/quickstart/nodes -name '*.policy' | head -1) learned.policy").status, 0);
+  std::size_t executed = 0;
+  for (const std::string& line : lines(TemporaryFolder::read(kSource / "docs/manual/commands.md"))) {
+    if (!line.starts_with("  `")) continue;
+    const std::string command = line.substr(3, line.size() - 4);
+    SCOPED_TRACE(command);
+    const Ended ended = home.run(command);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    ++executed;
+  }
+  EXPECT_GE(executed, 20U);
+}
+
+TEST(Docs, ManualIsWhatTheDeclarationsSay) {
+  const TemporaryFolder written;
+  ASSERT_EQ(runner("manual " + written.path().string()).status, 0);
+  const auto names = [](const fs::path& folder) {
+    std::vector<std::string> all;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+      all.push_back(entry.path().filename());
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  EXPECT_EQ(names(written.path()), names(kSource / "docs/manual"));
+  for (const std::string& name : names(written.path())) {
+    EXPECT_TRUE(TemporaryFolder::read(written / name) ==
+                TemporaryFolder::read(kSource / "docs/manual" / name))
+        << "docs/manual/" << name << " is out of date: run 'make docs'";
+  }
+}
+
+}  // namespace
+}  // namespace coppice
