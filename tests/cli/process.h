@@ -18,14 +18,14 @@ struct Ended {
   std::string err;
 };
 
-/// Runs a shell command in which `runner` is the program under test.
+/// Runs a bash script in which `runner` is the program under test and $RUNNER its path.
 inline Ended shell(const std::string& command, const std::filesystem::path& folder = COPPICE_SOURCE_DIR,
                    const std::string& input = {}) {
   const TemporaryFolder scratch;
   const auto quoted = [](const std::filesystem::path& path) { return "'" + path.string() + "'"; };
   scratch.write("in", input);
-  scratch.write("script", "runner() { '" COPPICE_RUNNER "' \"$@\"; }\ncd " + quoted(folder) +
-                              " || exit 99\n" + command + "\n");
+  scratch.write("script", "RUNNER='" COPPICE_RUNNER "'\nrunner() { \"$RUNNER\" \"$@\"; }\ncd " +
+                              quoted(folder) + " || exit 99\n" + command + "\n");
   const std::string line = "bash " + quoted(scratch / "script") + " < " + quoted(scratch / "in") + " > " +
                            quoted(scratch / "out") + " 2> " + quoted(scratch / "err");
   const int status = std::system(line.c_str());

@@ -1,0 +1,233 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tests/cli/process.h"
+
+namespace coppice {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using Names = std::set<std::string>;
+
+/// A folder with small experiments.
+class Runs : public testing::Test {
+ protected:
+  Runs() {
+    folder_.write("small.xml", R"(<experiment coppice="1" seed="3">
+  <arg name="episodes" default="5"/>
+  <problem id="car"><double_integrator start="uniform"/></problem>
+  <policy id="lqr"><linear_feedback gains="0.687, 1.177"/></policy>
+  <policy id="random"><random/></policy>
+  <collect id="samples" problem="car" policy="random" episodes="${episodes}" replicates="2"/>
+  <evaluate id="scores" problem="car" policies="random, lqr" episodes="10"/>
+  <table id="costs" of="scores" rows="policy" metric="cost"/>
+</experiment>
+)");
+    folder_.write("failing.xml", R"(<experiment coppice="1" seed="3">
+  <problem id="car"><double_integrator/></problem>
+  <policy id="random"><random/></policy>
+  <evaluate id="endless" problem="car" policies="random" episodes="1000000000" time_limit="0.05 s"/>
+  <table id="of_endless" of="endless" rows="policy" metric="cost"/>
+  <evaluate id="fine" problem="car" policies="random" episodes="10" seed_label="fine"/>
+</experiment>
+)");
+    folder_.write("long.xml", R"(<experiment coppice="1" seed="3">
+  <arg name="episodes" default="60000"/>
+  <problem id="car"><double_integrator start="uniform"/></problem>
+  <policy id="random"><random/></policy>
+  <evaluate id="scores" problem="car" policies="random" episodes="${episodes}" returns="false"/>
+</experiment>
+)");
+  }
+
+  Ended run(const std::string& arguments) const { return runner(arguments, folder_.path()); }
+  Ended script(const std::string& command) const { return shell(command, folder_.path()); }
+
+  /// Names of the nodes that the plan would run.
+  Names planned(const std::string& arguments) const {
+    Names names;
+    const Ended ended = run("plan --json " + arguments);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    const Json plan = Json::parse(ended.out);
+    for (const Json& node : plan.at("experiments")[0].at("nodes")) {
+      if (node.at("runs").get<bool>()) names.insert(node.at("name"));
+    }
+    return names;
+  }
+  /// Runs and tells which nodes were finished.
+  Names executed(const std::string& arguments) const {
+    Names names;
+    const Ended ended = run("run --progress json " + arguments);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    for (const std::string& line : lines(ended.err)) {
+      const Json event = Json::parse(line);
+      if (event.at("event") == "finished") names.insert(event.at("node"));
+    }
+    return names;
+  }
+  /// Contents of all results below a folder, by name; times and what tells of the run left out.
+  static std::map<std::string, std::string> results(const fs::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+      const std::string name = entry.path().filename().string();
+      const std::string path = fs::relative(entry.path(), folder).string();
+      if (!entry.is_regular_file() || name.starts_with("timing") || path.starts_with(".")) continue;
+      if (name == "provenance.json" || name == "events.jsonl" || name == "report.html") continue;
+      files[path] = TemporaryFolder::read(entry.path());
+    }
+    return files;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Runs, WriteTablesAndNameThemOnStdout) {
+  const Ended ended = run("small.xml");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.out, "out/small/tables/costs.csv\n");
+  EXPECT_TRUE(contains(ended.err, "done: ")) << ended.err;
+  const std::string table = TemporaryFolder::read(folder_ / "out/small/tables/costs.csv");
+  EXPECT_TRUE(contains(table, "lqr")) << table;
+  for (const std::string name : {"resolved.xml", "provenance.json", "events.jsonl"}) {
+    EXPECT_TRUE(fs::exists(folder_ / "out/small" / name)) << name;
+  }
+}
+
+TEST_F(Runs, AreUpToDateTheSecondTime) {
+  ASSERT_EQ(run("small.xml").status, 0);
+  const Ended again = run("run small.xml");
+  EXPECT_EQ(again.status, 0);
+  EXPECT_EQ(again.err, "everything is up to date: 5 nodes\n");
+  EXPECT_EQ(again.out, "out/small/tables/costs.csv\n");
+}
+
+TEST_F(Runs, DoWhatThePlanSays) {
+  for (const std::string arguments :
+       {"small.xml --only samples", "small.xml", "small.xml", "small.xml episodes:=6",
+        "small.xml --force scores", "small.xml --seed 4", "small.xml --seed 4 --only scores"}) {
+    SCOPED_TRACE(arguments);
+    const Names expected = planned(arguments);
+    EXPECT_EQ(executed(arguments), expected);
+  }
+}
+
+TEST_F(Runs, RunOnlyWhatDependsOnAChange) {
+  ASSERT_EQ(run("small.xml").status, 0);
+  const Names names = planned("small.xml episodes:=6");
+  EXPECT_EQ(names.size(), 2U);
+  for (const std::string& name : names) EXPECT_TRUE(name.starts_with("samples")) << name;
+  const Ended text = run("plan small.xml episodes:=6");
+  EXPECT_TRUE(contains(text.out, "small: 2 of 5 nodes to run")) << text.out;
+  EXPECT_TRUE(contains(text.out, "5 -> 6")) << text.out;
+  const Ended why = run("why samples small.xml episodes:=6");
+  EXPECT_EQ(why.status, 0) << why.err;
+  EXPECT_TRUE(contains(why.out, "5 -> 6")) << why.out;
+  EXPECT_TRUE(contains(run("why samples").out, "up to date"));
+}
+
+TEST_F(Runs, GiveTheSameBytesWhateverTheThreadsAndTheFolder) {
+  ASSERT_EQ(run("small.xml -j 1 --out one").status, 0);
+  ASSERT_EQ(run("small.xml -j 2 --out two").status, 0);
+  const auto one = results(folder_ / "one/small");
+  EXPECT_GE(one.size(), 8U);
+  EXPECT_EQ(one, results(folder_ / "two/small"));
+}
+
+TEST_F(Runs, ShowFailuresAndFinishTheRest) {
+  const Ended ended = run("failing.xml");
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_TRUE(contains(ended.err, "failed: failing endless")) << ended.err;
+  EXPECT_TRUE(contains(ended.err, "time_limit")) << ended.err;
+  EXPECT_TRUE(contains(ended.err, "1 skipped because an input failed")) << ended.err;
+  EXPECT_TRUE(fs::exists(folder_ / "out/failing/nodes/fine.csv"));
+  const Ended status = run("status");
+  EXPECT_EQ(status.status, 0);
+  EXPECT_TRUE(contains(status.out, "failed")) << status.out;
+  EXPECT_TRUE(contains(status.out, "time_limit")) << status.out;
+}
+
+TEST_F(Runs, StopWhenToldToAndGoOnLater) {
+  ASSERT_EQ(run("long.xml -j 1 --out whole").status, 0);
+  const Ended ended = script(
+      "$RUNNER long.xml -j 1 --progress json 2> log & pid=$!\n"
+      "until grep -q started log; do sleep 0.02; done\n"
+      "kill -INT $pid; wait $pid; echo status $?");
+  EXPECT_EQ(ended.out, "status 3\n") << ended.err;
+  const Ended again = run("long.xml -j 1");
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(results(folder_ / "out/long"), results(folder_ / "whole/long"));
+}
+
+TEST_F(Runs, StopAtOnceTheSecondTime) {
+  const Ended ended = script(
+      "$RUNNER long.xml episodes:=900000000 --progress none & pid=$!\nsleep 0.5\n"
+      "kill -INT $pid; kill -INT $pid; wait $pid; echo status $?");
+  EXPECT_EQ(ended.out, "status 3\n") << ended.err;
+}
+
+TEST_F(Runs, ExcludeEachOtherFromAFolder) {
+  const Ended ended = script(
+      "$RUNNER long.xml episodes:=900000000 --progress json 2> log & pid=$!\n"
+      "until grep -q started log; do sleep 0.02; done\n"
+      "runner long.xml; echo status $?; kill -INT $pid; wait $pid");
+  EXPECT_TRUE(contains(ended.out, "status 2\n")) << ended.out;
+  EXPECT_TRUE(contains(ended.err, "out/long")) << ended.err;
+}
+
+TEST_F(Runs, RefuseOutputFoldersThatCannotBeWritten) {
+  folder_.write("file", "");
+  for (const std::string out : {"file", "file/below", "/proc/nowhere"}) {
+    const Ended ended = run("small.xml --out " + out);
+    EXPECT_EQ(ended.status, 2) << out << "\n" << ended.err;
+    EXPECT_TRUE(contains(ended.err, out)) << ended.err;
+  }
+}
+
+TEST_F(Runs, KeepControlCodesOutOfPipes) {
+  const Ended ended = run("small.xml --progress plain");
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_FALSE(contains(ended.err, "\x1b"));
+  EXPECT_FALSE(contains(ended.err, "\r"));
+  EXPECT_TRUE(contains(ended.err, "[5/5] small ")) << ended.err;
+  EXPECT_EQ(lines(ended.err).size(), 6U) << ended.err;  // a line per node, and the summary
+  EXPECT_EQ(run("small.xml --seed 9 --progress none").err, "");
+}
+
+TEST_F(Runs, TakeSeveralConfigs) {
+  EXPECT_EQ(run("small.xml long.xml episodes:=7").status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "out/small/nodes/scores.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/long/nodes/scores.csv"));
+  const Ended ended = run("small.xml small.xml");
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_TRUE(contains(ended.err, "small")) << ended.err;
+}
+
+TEST_F(Runs, SweepAnArgumentGivenSeveralValues) {
+  EXPECT_EQ(planned("small.xml episodes:=5,6 --only samples").size(), 4U);
+}
+
+TEST_F(Runs, LeaveNothingToCollectUntilResultsAreReplaced) {
+  ASSERT_EQ(run("small.xml").status, 0);
+  EXPECT_TRUE(contains(run("gc --dry-run").err, "would remove 0 results"));
+  ASSERT_EQ(run("small.xml episodes:=6").status, 0);
+  EXPECT_TRUE(contains(run("gc").err, "removed 2 results"));
+  EXPECT_TRUE(contains(run("small.xml episodes:=6").err, "everything is up to date"));
+}
+
+TEST_F(Runs, DrawTheirGraph) {
+  const Ended ended = run("plan small.xml --dot");
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_TRUE(contains(ended.out, "digraph \"small\""));
+  EXPECT_TRUE(contains(ended.out, "\"scores\" -> \"costs\";"));
+  EXPECT_EQ(
+      script("command -v dot > /dev/null || exit 0; runner plan small.xml --dot | dot -Tsvg > graph.svg")
+          .status,
+      0);
+}
+
+}  // namespace
+}  // namespace coppice
