@@ -180,7 +180,7 @@ const Command<PolicyAct> kPolicyAct(
                 "action, empty where an action has fewer. Rows are the steps of one episode, or of several "
                 "when there is "
                 "a column 'episode'. The first bad row ends it.",
-     .examples = {{"printf 's_position,s_velocity\\n1,0\\n' | runner policy act learned.policy",
+     .examples = {{"printf 's_position,s_speed\\n1,0\\n' | runner policy act learned.policy",
                    "The action in one state."}}});
 
 }  // namespace

@@ -56,7 +56,7 @@ TEST_F(PolicyFiles, InfoShowsWhatTheFileHolds) {
 }
 
 TEST_F(PolicyFiles, ActAnswersEachStateInOrder) {
-  const Ended ended = act("s_position,s_velocity\n1,0\n0,0.5\n-0.2,0.1\n");
+  const Ended ended = act("s_position,s_speed\n1,0\n0,0.5\n-0.2,0.1\n");
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(ended.err, "");
   const std::vector<std::string> rows = lines(ended.out);
@@ -70,15 +70,15 @@ TEST_F(PolicyFiles, ActAnswersEachStateInOrder) {
 }
 
 TEST_F(PolicyFiles, ActTakesColumnsInAnyOrderAmongOthers) {
-  const std::string plain = act("s_position,s_velocity\n1,0.25\n").out;
-  EXPECT_EQ(act("s_velocity,note,s_position\r\n0.25,\"a, b\",1\r\n").out, plain);
-  EXPECT_EQ(act("s_position,s_velocity\n1,0.25").out, plain);  // no line end
+  const std::string plain = act("s_position,s_speed\n1,0.25\n").out;
+  EXPECT_EQ(act("s_speed,note,s_position\r\n0.25,\"a, b\",1\r\n").out, plain);
+  EXPECT_EQ(act("s_position,s_speed\n1,0.25").out, plain);  // no line end
 }
 
 TEST_F(PolicyFiles, ActAnswersBeforeTheInputEnds) {
   const Ended ended = shell(
       "mkfifo in out; (runner policy act lqr.policy < in > out) & exec 3> in 4< out; "
-      "printf 's_position,s_velocity\\n1,0\\n' >&3; read -t 20 -u 4 header && read -t 20 -u 4 first || exit "
+      "printf 's_position,s_speed\\n1,0\\n' >&3; read -t 20 -u 4 header && read -t 20 -u 4 first || exit "
       "5; "
       "printf '0,1\\n' >&3; read -t 20 -u 4 second || exit 6; exec 3>&-; wait; echo \"$first $second\"",
       folder_.path());
@@ -87,11 +87,11 @@ TEST_F(PolicyFiles, ActAnswersBeforeTheInputEnds) {
 }
 
 TEST_F(PolicyFiles, ActLocatesBadCells) {
-  const Ended ended = act("s_position,s_velocity\n1,0\n\n2,nan\n");
+  const Ended ended = act("s_position,s_speed\n1,0\n\n2,nan\n");
   EXPECT_EQ(ended.status, 2);
   EXPECT_EQ(lines(ended.out).size(), 2U);  // the good row before it was answered
   EXPECT_TRUE(
-      contains(ended.err, "<standard input>:4:3: error: 's_velocity' must be a finite number, not 'nan'"))
+      contains(ended.err, "<standard input>:4:3: error: 's_speed' must be a finite number, not 'nan'"))
       << ended.err;
   EXPECT_TRUE(contains(ended.err, "    4 | 2,nan")) << ended.err;
 }
@@ -100,9 +100,9 @@ TEST_F(PolicyFiles, ActRefusesOtherInputs) {
   struct Case {
     std::string csv, message;
   };
-  for (const Case& wrong : {Case{"", "no data"}, Case{"s_position\n1\n", "no column 's_velocity'"},
-                            Case{"s_postion,s_velocity\n1,2\n", "did you mean 's_position'?"},
-                            Case{"s_position,s_velocity\n1\n", "<standard input>:2"},
+  for (const Case& wrong : {Case{"", "no data"}, Case{"s_position\n1\n", "no column 's_speed'"},
+                            Case{"s_postion,s_speed\n1,2\n", "did you mean 's_position'?"},
+                            Case{"s_position,s_speed\n1\n", "<standard input>:2"},
                             Case{"s_position,s_position\n1,2\n", "s_position"},
                             Case{std::string("\0\xff\n", 3), "<standard input>:1"}}) {
     const Ended ended = act(wrong.csv);
@@ -112,10 +112,10 @@ TEST_F(PolicyFiles, ActRefusesOtherInputs) {
 }
 
 TEST_F(PolicyFiles, APolicyWithoutSpacesNeedsAProblem) {
-  const Ended without = act("s_position,s_velocity\n1,0\n", "free.policy");
+  const Ended without = act("s_position,s_speed\n1,0\n", "free.policy");
   EXPECT_EQ(without.status, 2);
   EXPECT_TRUE(contains(without.err, "--problem")) << without.err;
-  const std::string rows = "s_position,s_velocity\n1,0\n";
+  const std::string rows = "s_position,s_speed\n1,0\n";
   EXPECT_EQ(act(rows, "free.policy --problem double_integrator").out, act(rows).out);
 }
 
@@ -126,7 +126,7 @@ TEST_F(PolicyFiles, DamagedFilesAreRefused) {
   flipped[whole.size() / 2] = static_cast<char>(flipped[whole.size() / 2] ^ 1);
   folder_.write("flipped.policy", flipped);
   folder_.write("empty.policy", "");
-  folder_.write("text.policy", "s_position,s_velocity\n");
+  folder_.write("text.policy", "s_position,s_speed\n");
   for (const std::string name : {"short", "flipped", "empty", "text"}) {
     for (const std::string command : {"info", "act"}) {
       const Ended ended = runner("policy " + command + " " + name + ".policy", folder_.path());
@@ -174,7 +174,7 @@ TEST_F(PolicyFiles, EvaluateRefusesWhatDoesNotFit) {
   for (const Case& wrong :
        {Case{"lqr.policy", "'--problem' is missing"},
         Case{"lqr.policy --problem duoble_integrator", "did you mean 'double_integrator'?"},
-        Case{"lqr.policy --problem '<double_integrator cots=\"p2_v2\"/>'", "did you mean 'cost'?"},
+        Case{"lqr.policy --problem '<double_integrator cots=\"p2_v2\"/>'", "did you mean 'cost'"},
         Case{"lqr.policy --problem double_integrator --episodes 0", "'--episodes' must be"},
         Case{"lqr.policy --problem double_integrator --discount 1.5", "'--discount' must be"},
         Case{"lqr.policy --config nowhere.xml --problem car", "no file 'nowhere.xml'"}}) {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include "tests/cli/process.h"
 
 namespace coppice {
@@ -62,6 +64,10 @@ struct Misuse {
   std::string message;  ///< part of what is said
   std::string hint;     ///< another part
 };
+
+void PrintTo(const Misuse& misuse, std::ostream* out) {
+  *out << "runner " << misuse.arguments;
+}
 
 class Misused : public testing::TestWithParam<Misuse> {};
 
