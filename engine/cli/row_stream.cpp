@@ -31,7 +31,11 @@ bool RowStream::read_more() {
     count = ::read(descriptor_, buffer, sizeof buffer);
   } while (count < 0 && errno == EINTR);
   if (count < 0) throw std::runtime_error(std::string("cannot read standard input: ") + std::strerror(errno));
-  pending_.append(buffer, static_cast<std::size_t>(count));
+  // Lines may end in CR LF; a lone CR is no line end and stays out of numbers by their own check.
+  for (ssize_t i = 0; i < count; ++i) {
+    if (buffer[i] == '\n' && pending_.ends_with('\r')) pending_.pop_back();
+    pending_ += buffer[i];
+  }
   return count > 0;
 }
 

@@ -14,8 +14,8 @@ class RowStream {
   RowStream(int descriptor, std::function<void()> before_wait)
       : descriptor_(descriptor), before_wait_(std::move(before_wait)) {}
 
-  /// The next records, at least one, line ends included; nothing at the end. Throws std::runtime_error with
-  /// the system's reason.
+  /// The next records, at least one, line ends (LF) included; nothing at the end. Throws std::runtime_error
+  /// with the system's reason.
   std::optional<std::string> next();
 
  private:
