@@ -163,10 +163,16 @@ std::string component_versions(std::string_view interface, const Element& resolv
 
 std::shared_ptr<void> detail::make_component(std::string_view interface, const Element& element,
                                              Element* resolved, Diagnostics& diagnostics) {
-  const Catalogue& catalogue = Catalogue::instance();
-  if (const ComponentInfo* info = catalogue.find(interface, element.name); info != nullptr) {
+  if (const ComponentInfo* info = Catalogue::instance().find(interface, element.name); info != nullptr) {
     return info->make(element, resolved, diagnostics);
   }
+  report_unknown_component(interface, element, diagnostics);
+  return nullptr;
+}
+
+void detail::report_unknown_component(std::string_view interface, const Element& element,
+                                      Diagnostics& diagnostics) {
+  const Catalogue& catalogue = Catalogue::instance();
   const std::vector<std::string> names = catalogue.names(interface);
   std::string message = fmt::format("there is no {} '{}'", interface, element.name);
   for (const std::string& other : catalogue.interfaces()) {
@@ -176,7 +182,6 @@ std::shared_ptr<void> detail::make_component(std::string_view interface, const E
   std::vector<std::string> notes;
   if (!nearest(element.name, names).empty()) notes.push_back("valid: " + join(names));
   diagnostics.error(element.place, std::move(message), suggestion(element.name, names), std::move(notes));
-  return nullptr;
 }
 
 }  // namespace coppice

@@ -218,9 +218,11 @@ class Manual {
       for (const LanguageElement& other : language_.elements) {
         if (other.in_root) inside.push_back(link(other));
       }
+    } else if (element.content == LanguageContent::surrounding) {
+      inside.emplace_back("whatever may stand around it");
+    } else if (element.content == LanguageContent::anything) {
+      inside.emplace_back("any elements");
     }
-    if (element.content == LanguageContent::surrounding) inside.emplace_back("whatever may stand around it");
-    if (element.content == LanguageContent::anything) inside.emplace_back("any elements");
     if (!inside.empty()) text += "Inside: " + join(inside) + ".\n\n";
     return text;
   }

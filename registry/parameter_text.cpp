@@ -75,7 +75,6 @@ std::string parameter_text(const ParameterInfo& info) {
   } else if (!info.unit.empty()) {
     text += fmt::format(" in {}", info.unit);
   }
-  if (info.automatic) text += " or auto";
   if (info.required) return text + ", required";
   return info.default_text.empty() ? text : text + ", default " + default_text(info);
 }

@@ -166,8 +166,10 @@ constexpr ValueType type_of() {
 /// Makes the component named by `element` for `interface` (catalogue look-up); null after an error.
 std::shared_ptr<void> make_component(std::string_view interface, const Element& element, Element* resolved,
                                      Diagnostics& diagnostics);
-/// Reports a required parameter that was not given.
-void report_missing(const ParameterInfo&, Reader&);
+/// Reports that `interface` has no component named like `element`.
+void report_unknown_component(std::string_view interface, const Element& element, Diagnostics& diagnostics);
+/// Reports a required parameter that was not given, unless an unknown attribute is a misspelling of it.
+void report_missing(const ParameterInfo&, const std::vector<ParameterInfo>& all, Reader&);
 /// Reports attributes that no declaration knows, with the nearest valid name.
 void check_attributes(const std::vector<ParameterInfo>&, const std::vector<SlotInfo>&, Reader&);
 /// The elements that fill each slot (those inside `<slot>` unless direct). Reports too few, too many and

@@ -158,7 +158,8 @@ T Parameters<T>::read(Reader& reader) const {
   reader.resolved().place = reader.element().place;
   for (std::size_t i = 0; i < fields_.size(); ++i) {
     const Attribute* given = reader.element().find(parameters_[i].name);
-    if (given == nullptr && parameters_[i].required) detail::report_missing(parameters_[i], reader);
+    if (given == nullptr && parameters_[i].required)
+      detail::report_missing(parameters_[i], parameters_, reader);
     const bool failed = given != nullptr && given->failed;
     if (failed) reader.diagnostics().already_reported();
     fields_[i].read(object, failed ? nullptr : given, reader);

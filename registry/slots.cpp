@@ -21,6 +21,12 @@ const ParameterInfo* find_parameter(const std::vector<ParameterInfo>& parameters
   return found == parameters.end() ? nullptr : &*found;
 }
 
+std::vector<std::string> names_of(const std::vector<ParameterInfo>& parameters) {
+  std::vector<std::string> names;
+  for (const ParameterInfo& info : parameters) names.push_back(info.name);
+  return names;
+}
+
 std::string valid_names(const SlotInfo& slot) {
   return "valid: " + join(Catalogue::instance().names(slot.interface));
 }
@@ -103,35 +109,35 @@ class Assignment {
                                 parameter_text(*info)));
       return;
     }
-    const Catalogue& catalogue = Catalogue::instance();
     for (const SlotInfo& slot : slots_) {
-      if (slot.direct || catalogue.find(slot.interface, child.name) == nullptr) continue;
+      if (slot.direct || Catalogue::instance().find(slot.interface, child.name) == nullptr) continue;
       reader_.error(child.place, message,
                     fmt::format("did you mean <{0}><{1}/></{0}>?", slot.name, child.name));
       return;
     }
-    std::vector<std::string> names, wanted;
+    if (slots_.size() == 1 && slots_.front().direct) {
+      report_unknown_component(slots_.front().interface, child, reader_.diagnostics());
+      return;
+    }
+    const std::vector<std::string> names = valid_children();
+    const bool near = !nearest(child.name, names).empty();
+    reader_.error(child.place, message,
+                  names.empty() ? "it has no elements inside" : suggestion(child.name, names),
+                  near ? std::vector<std::string>{"valid: " + join(names)} : std::vector<std::string>{});
+  }
+
+  std::vector<std::string> valid_children() const {
+    std::vector<std::string> names;
     for (const SlotInfo& slot : slots_) {
-      if (!slot.direct) {
-        names.push_back(slot.name);
-        continue;
-      }
-      wanted.push_back(slot.interface);
-      for (std::string& component : catalogue.names(slot.interface)) names.push_back(std::move(component));
+      if (!slot.direct) names.push_back(slot.name);
     }
-    std::vector<std::string> notes;
-    for (const std::string& interface : catalogue.interfaces()) {
-      if (!wanted.empty() && catalogue.find(interface, child.name) != nullptr) {
-        notes.push_back(fmt::format("'{}' is {}; here stands {}", child.name, with_article(interface),
-                                    with_article(join(wanted, " or "))));
+    for (const SlotInfo& slot : slots_) {
+      if (!slot.direct) continue;
+      for (std::string& component : Catalogue::instance().names(slot.interface)) {
+        names.push_back(std::move(component));
       }
     }
-    if (names.empty()) {
-      reader_.error(child.place, message, "it has no elements inside");
-    } else {
-      if (!nearest(child.name, names).empty()) notes.push_back("valid: " + join(names));
-      reader_.error(child.place, message, suggestion(child.name, names), std::move(notes));
-    }
+    return names;
   }
 
   const std::string& name() const { return reader_.element().name; }
@@ -146,15 +152,19 @@ class Assignment {
 
 }  // namespace
 
-void report_missing(const ParameterInfo& info, Reader& reader) {
+void report_missing(const ParameterInfo& info, const std::vector<ParameterInfo>& all, Reader& reader) {
+  const std::vector<std::string> names = names_of(all);
+  for (const Attribute& attribute : reader.element().attributes) {
+    const bool known = find_parameter(all, attribute.name) != nullptr;
+    if (!known && nearest(attribute.name, names) == info.name) return;  // check_attributes says so
+  }
   reader.error(reader.element().place, fmt::format("<{}> needs '{}'", reader.element().name, info.name),
                fmt::format("{} ({})", info.doc, parameter_text(info)));
 }
 
 void check_attributes(const std::vector<ParameterInfo>& parameters, const std::vector<SlotInfo>& slots,
                       Reader& reader) {
-  std::vector<std::string> names;
-  for (const ParameterInfo& info : parameters) names.push_back(info.name);
+  const std::vector<std::string> names = names_of(parameters);
   for (const Attribute& attribute : reader.element().attributes) {
     if (find_parameter(parameters, attribute.name) != nullptr) continue;
     std::string hint = suggestion(attribute.name, names);

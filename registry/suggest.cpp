@@ -50,7 +50,7 @@ constexpr std::size_t kLongestName = 200;  // beyond that nobody mistyped a name
 std::string nearest(std::string_view given, const std::vector<std::string>& known) {
   const std::string name = fold(given);
   if (name.empty() || name.size() > kLongestName) return "";
-  const std::size_t allowed = std::max<std::size_t>(1, name.size() / 3);
+  const std::size_t allowed = std::max<std::size_t>(1, (name.size() + 1) / 3);
   std::size_t best = allowed + 1;
   std::string found;
   for (const std::string& candidate : known) {

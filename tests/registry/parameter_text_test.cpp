@@ -31,7 +31,7 @@ TEST(ParameterText, IsOneSentence) {
   EXPECT_EQ(parameter_text(info), "integer >= 2, default 4");
   info.automatic = true;
   info.default_text = std::string("auto");
-  EXPECT_EQ(parameter_text(info), "integer >= 2 or auto, default auto");
+  EXPECT_EQ(parameter_text(info), "integer >= 2, default auto");
   info = number(any(), "m/s");
   EXPECT_EQ(parameter_text(info), "number in m/s, default 4 m/s");
   info.required = true;

@@ -163,11 +163,11 @@ INSTANTIATE_TEST_SUITE_P(
                 "'population' is 3000000000, but must be in [-2147483648, 2147483647]"},
         Mistake{R"(noisy="yes")", "'yes' is neither true nor false"},
         Mistake{R"(mode="fats")", "did you mean 'fast'? valid: slow, fast"},
-        Mistake{R"(population="automatic")", "or auto"},
+        Mistake{R"(population="automatic")", "integer >= 2, default auto"},
         Mistake{R"(data="a/nowhere.csv")", "there is no file"},
         Mistake{R"(perod="1")", "<thing> has no parameter 'perod'"},
         Mistake{R"(perod="1")", "did you mean 'period' (number > 0 s, default 0.05 s)?"},
-        Mistake{R"(popluation="20")", "did you mean 'population' (integer >= 2 or auto, default auto)?"}));
+        Mistake{R"(popluation="20")", "did you mean 'population' (integer >= 2, default auto)?"}));
 
 TEST(Parameters, PointAtTheWrongItemOfAList) {
   const Result result = read(R"(angles="1, x, 2")");
@@ -237,6 +237,12 @@ TEST(Parameters, RequireWhatHasNoDefault) {
   EXPECT_EQ(errors[0].message, "<linked> needs 'width'");
   EXPECT_EQ(errors[0].hint, "How wide. (number > 0 m, required)");
   EXPECT_EQ(errors[1].message, "<linked> needs 'policies'");
+}
+
+TEST(Parameters, AMisspeltRequiredOneIsOneMistake) {
+  const std::vector<Diagnostic> errors = read_linked(R"(id="a" widht="1" problem="p" policies="x")");
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].message, "<linked> has no parameter 'widht'");
 }
 
 TEST(Parameters, RefuseEmptyAndDoubledReferences) {

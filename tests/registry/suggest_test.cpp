@@ -31,7 +31,7 @@ INSTANTIATE_TEST_SUITE_P(Typos, Nearest,
                                          Typo{"lateral-noise", "lateral_noise"},
                                          Typo{"lateralnoise", "lateral_noise"}, Typo{"nois", "noise"},
                                          Typo{"polcy", "policy"}, Typo{"ha", "HA"}, Typo{"AHNA", "ANHA"},
-                                         Typo{"winner2106", "winner2016"},
+                                         Typo{"sgimaa", "sigma"}, Typo{"winner2106", "winner2016"},
                                          Typo{"epi", "episodes"},  // abbreviated
                                          Typo{"horizons", "horizon"}));
 
