@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -65,7 +66,8 @@ void FittedQ::iterate(Parallel& parallel) {
       iteration_ == 0 ? std::vector<double>(samples_.rows()) : best_values(parallel);
   double squares = 0;
   for (std::size_t i = 0; i < samples_.rows(); ++i) {
-    const double target = samples_.reward[i] + discount_ * best[i];
+    double target = samples_.reward[i] + discount_ * best[i];
+    if (parameters_.target_min) target = std::max(target, *parameters_.target_min);
     squares += (target - y_(i, 0)) * (target - y_(i, 0));
     y_(i, 0) = target;
   }

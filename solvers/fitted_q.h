@@ -12,6 +12,7 @@ namespace coppice {
 struct FittedQParameters {
   int iterations = 10;
   std::optional<double> discount;
+  std::optional<double> target_min;
   Sub<Approximator> q_value{"extra_trees"};
   Maximization::Method maximization = Maximization::Method::merge;
   int max_leaves = 50;
@@ -26,6 +27,10 @@ struct FittedQParameters {
              between(1, 1000000))
         .automatic("discount", static_cast<std::optional<double> T::*>(&T::discount), "",
                    "Discount of a step; auto: the problem's.", between(0, 1))
+        .automatic("target_min", static_cast<std::optional<double> T::*>(&T::target_min), "",
+                   "Targets below are raised to it, so that a rare large penalty does not spread over its "
+                   "neighbours; "
+                   "auto: no limit, as in the thesis.")
         .component(
             "q_value", static_cast<Sub<Approximator> T::*>(&T::q_value),
             "Approximator of the value of states and actions; constant leaves, as linear ones may diverge.");
