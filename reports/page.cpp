@@ -1,0 +1,240 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+
+#include "engine/data/file_system.h"
+#include "engine/graph/report.h"
+#include "engine/graph/status.h"
+#include "registry/text.h"
+#include "reports/html.h"
+#include "reports/page_style.h"
+#include "reports/table_view.h"
+
+namespace coppice {
+namespace {
+
+namespace fs = std::filesystem;
+using html::element;
+using html::text_element;
+using Json = nlohmann::ordered_json;
+
+/// What a run folder says about itself.
+struct RunRecord {
+  fs::path folder;
+  Element experiment;  ///< resolved.xml
+  Json provenance;
+  RunStatus status;
+};
+
+RunRecord read_record(const fs::path& folder) {
+  RunRecord record;
+  record.folder = folder;
+  record.status = read_status(folder);
+  record.experiment = parse_xml(read_source((folder / "resolved.xml").string()));
+  record.provenance = Json::parse(read_file(folder / "provenance.json"), nullptr, false);
+  if (!record.provenance.is_object()) record.provenance = Json::object();
+  return record;
+}
+
+/// A JSON value as text; "" when there is none.
+std::string text_of(const Json& object, const char* name) {
+  const auto found = object.find(name);
+  if (found == object.end() || found->is_null()) return {};
+  if (found->is_string()) return found->get<std::string>();
+  if (!found->is_array()) return found->dump();
+  std::vector<std::string> items;
+  for (const Json& item : *found) items.push_back(item.is_string() ? item.get<std::string>() : item.dump());
+  return join(items, " ");
+}
+
+std::string definitions(const Json& object) {
+  std::string list;
+  for (const auto& [name, value] : object.items()) {
+    list += text_element("dt", name) + text_element("dd", text_of(object, name.c_str()));
+  }
+  return element("dl", list);
+}
+
+std::string folded(const std::string& title, const std::string& content) {
+  return element("details", text_element("summary", title) + content);
+}
+
+std::string header(const RunRecord& record) {
+  const std::string name(record.experiment.get("name"));
+  const std::string outcome = text_of(record.provenance, "outcome");
+  std::vector<std::string> facts = {fmt::format("seed {}", record.experiment.get("seed"))};
+  if (const auto overrides = record.provenance.find("overrides"); overrides != record.provenance.end()) {
+    for (const auto& [argument, value] : overrides->items()) {
+      facts.push_back(fmt::format("{}:={}", argument, text_of(*overrides, argument.c_str())));
+    }
+  }
+  if (!outcome.empty()) facts.push_back(outcome);
+  facts.push_back(text_of(record.provenance, "finished"));
+  std::erase(facts, "");
+  return element("header", text_element("h1", name) + text_element("p", record.experiment.get("doc")) +
+                               text_element("p", join(facts, " · "), {{"class", "soft"}}));
+}
+
+/// The element of the node that a published file belongs to; null when there is none. Files are called
+/// <id>.csv, or <id>.<sweep point>.csv.
+const Element* node_of_file(const Element& experiment, const std::string& file) {
+  const std::string id = file.substr(0, file.find('.'));
+  for (const Element& node : experiment.children) {
+    if (node.get("id") == id) return &node;
+  }
+  return nullptr;
+}
+
+/// The published tables of a folder, in the order of the experiment's nodes, then by name.
+std::vector<std::string> published_files(const RunRecord& record, const char* shelf) {
+  std::vector<std::string> files;
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(record.folder / shelf, code)) {
+    if (entry.path().extension() == ".csv") files.push_back(entry.path().filename().string());
+  }
+  const auto rank = [&](const std::string& file) {
+    const Element* node = node_of_file(record.experiment, file);
+    return std::pair(node != nullptr ? node - record.experiment.children.data() : -1, file);
+  };
+  std::sort(files.begin(), files.end(),
+            [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
+  return files;
+}
+
+std::vector<std::string> list_of(std::string_view text) {
+  std::vector<std::string> items;
+  for (const std::string_view item : split_list(text)) items.emplace_back(item);
+  return items;
+}
+
+std::string published_table(const RunRecord& record, const std::string& path) {
+  const std::string file = fs::path(path).filename().string();
+  const Element* node = node_of_file(record.experiment, file);
+  TableKeys keys;
+  std::string title = fs::path(file).stem().string(), text;
+  if (node != nullptr) {
+    keys = {list_of(node->get("rows")), list_of(node->get("columns"))};
+    text = text_element("p", node->get("doc"));
+    if (const Attribute* metric = node->find("metric")) title += ": " + metric->value;
+  }
+  std::string content;
+  try {
+    content = table_view(read_table(record.folder / path), keys);
+  } catch (const std::runtime_error& unreadable) {
+    content = text_element("pre", unreadable.what());
+  }
+  const std::string source =
+      element("figcaption", "Data: " + text_element("a", path, {{"href", html::link(path)}}));
+  return text_element("h3", title) + text + element("figure", content + source);
+}
+
+std::string shelf(const RunRecord& record, const char* folder, const char* title) {
+  std::string content;
+  for (const std::string& file : published_files(record, folder)) {
+    content += published_table(record, std::string(folder) + "/" + file);
+  }
+  return content.empty() ? content : element("section", text_element("h2", title) + content);
+}
+
+/// How many nodes of an id are in which state.
+struct Count {
+  std::size_t done = 0, failed = 0, all = 0;
+};
+
+std::string node_table(const RunRecord& record) {
+  std::map<std::string, Count> counts;
+  for (const NodeState& node : record.status.states) {
+    Count& count = counts[node.id];
+    ++count.all;
+    if (node.done) ++count.done;
+    if (!node.message.empty()) ++count.failed;
+  }
+  std::string body;
+  std::set<std::string> shown;
+  for (const Element& node : record.experiment.children) {
+    const auto found = counts.find(std::string(node.get("id")));
+    if (found == counts.end() || !shown.insert(found->first).second) continue;
+    const Count& count = found->second;
+    const char* state = count.failed > 0 ? "failed" : count.done == count.all ? "done" : "missing";
+    body += element(
+        "tr", text_element("th", found->first, {{"scope", "row"}}) + text_element("td", node.name) +
+                  text_element("td", state, {{"class", state}}) +
+                  text_element("td", fmt::format("{} / {}", count.done, count.all), {{"class", "number"}}) +
+                  text_element("td", node.get("doc")));
+  }
+  const char* columns[] = {"node", "kind", "state", "done", "what it is for"};
+  std::string cells;
+  for (const char* column : columns) cells += text_element("th", column, {{"scope", "col"}});
+  return element("figure", element("table", element("thead", element("tr", cells)) + element("tbody", body)));
+}
+
+std::string nodes(const RunRecord& record) {
+  const RunStatus& status = record.status;
+  std::string failures;
+  for (const NodeState& node : status.states) {
+    if (!node.message.empty()) failures += text_element("h3", node.name) + text_element("pre", node.message);
+  }
+  const std::string summary =
+      fmt::format("{} nodes: {} done, {} failed, {} missing.", status.nodes, status.finished, status.failed,
+                  status.nodes - status.finished - status.failed);
+  return element("section",
+                 text_element("h2", "Nodes") + text_element("p", summary) + failures + node_table(record));
+}
+
+std::string provenance(const RunRecord& record) {
+  Json facts = Json::object();
+  for (const char* name : {"config", "command", "threads", "started", "finished", "outcome"}) {
+    if (const std::string text = text_of(record.provenance, name); !text.empty()) facts[name] = text;
+  }
+  std::string content = definitions(facts);
+  const auto fold = [&](const char* name, const char* title) {
+    const auto found = record.provenance.find(name);
+    if (found != record.provenance.end() && found->is_object() && !found->empty()) {
+      content += folded(title, definitions(*found));
+    }
+  };
+  fold("arguments", "Arguments");
+  fold("environment", "Program and machine");
+  Json inputs = Json::object();
+  if (const auto found = record.provenance.find("inputs"); found != record.provenance.end()) {
+    for (const Json& input : *found) inputs[text_of(input, "path")] = text_of(input, "hash");
+  }
+  if (!inputs.empty()) content += folded("Input files and their hashes", definitions(inputs));
+  std::string links;
+  for (const char* file : {"resolved.xml", "provenance.json", "events.jsonl"}) {
+    links += (links.empty() ? "" : " · ") + text_element("a", file, {{"href", file}});
+  }
+  return element("section", text_element("h2", "Provenance") + content + element("p", links));
+}
+
+/// `report.html`: one file that needs neither network nor scripts, in light and dark and on paper.
+struct Page : Report {
+  void write(const fs::path& run_folder) const override {
+    const RunRecord record = read_record(run_folder);
+    std::string head = "<meta charset=\"utf-8\"/>\n";
+    head += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
+    head += text_element("title", record.experiment.get("name"));
+    head += element("style", kPageStyle);
+    std::string main = shelf(record, "tables", "Tables");
+    main += shelf(record, "figures", "Figures");
+    main += nodes(record);
+    main += provenance(record);
+    std::string page = "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n";
+    page += element("head", head);
+    page += element("body", header(record) + element("main", main));
+    write_file(run_folder / "report.html", page + "\n</html>\n");
+  }
+
+  static Parameters<Page> parameters() { return {}; }
+};
+
+const Component<Report, Page> kComponent(
+    "page", "Tables, state of the nodes and provenance of an experiment on one page, report.html.",
+    "no publication");
+
+}  // namespace
+}  // namespace coppice

@@ -1,0 +1,177 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "engine/data/table_file.h"
+#include "engine/graph/artifacts.h"
+#include "engine/vocabulary/solver.h"
+#include "tests/engine/graph/nodes/fake_context.h"
+
+namespace coppice::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using Attributes = std::vector<std::pair<std::string, std::string>>;
+
+/// Pretends to learn: after n units the "policy" is a constant made of n draws and of the samples' rewards.
+class FakeTraining : public Training {
+ public:
+  FakeTraining(int units, const TrainingInputs& inputs) : units_(units), inputs_(inputs) {}
+
+  bool advance(Parallel&) override {
+    ++done_;
+    sum_ += inputs_.draws.uniform("fake_learning", 0, 1, static_cast<std::uint32_t>(done_));
+    return done_ < units_;
+  }
+  TrainingProgress progress() const override {
+    TrainingProgress progress{done_, units_, {{"sum", sum_}}};
+    if (done_ % 2 == 0) progress.measures.emplace_back("even", done_);
+    return progress;
+  }
+  void save(Archive& archive) const override {
+    archive.put("done", std::vector<std::int64_t>{done_});
+    archive.put("sum", std::vector<double>{sum_});
+  }
+  void load(Archive& archive) override {
+    done_ = archive.get<std::vector<std::int64_t>>("done").at(0);
+    sum_ = archive.get<std::vector<double>>("sum").at(0);
+  }
+  TrainingResult result() const override {
+    double value = sum_;
+    if (inputs_.samples != nullptr) value += static_cast<double>(inputs_.samples->rows());
+    Element constant = element("constant", {{"values", std::to_string(value / 1000)}});
+    Diagnostics diagnostics;
+    return {make<Policy>(constant, diagnostics), {}};
+  }
+
+ private:
+  std::int64_t units_, done_ = 0;
+  double sum_ = 0;
+  const TrainingInputs inputs_;
+};
+
+struct FakeSolver : Solver {
+  int units = 6;
+  bool samples = false, simulator = false, single_action = false;
+
+  Needs needs() const override { return {samples, simulator, single_action}; }
+  std::unique_ptr<Training> start(const TrainingInputs& inputs) const override {
+    return std::make_unique<FakeTraining>(units, inputs);
+  }
+  static Parameters<FakeSolver> parameters() {
+    return Parameters<FakeSolver>()
+        .add("units", &FakeSolver::units, "", "Units of work.", at_least(1))
+        .add("samples", &FakeSolver::samples, "", "Needs samples.")
+        .add("simulator", &FakeSolver::simulator, "", "Needs a simulator.")
+        .add("single_action", &FakeSolver::single_action, "", "Needs a single action.");
+  }
+};
+const Component<Solver, FakeSolver> kFakeSolver("fake_solver", "Learns nothing.", "no publication");
+
+/// Two actions, and only episodes: no simulator.
+class FakeLiveProblem : public Problem {
+ public:
+  const Spaces& spaces() const override { return spaces_; }
+  double discount() const override { return 1; }
+  int horizon() const override { return 1; }
+  Returns episodes(const Simulation&, const Draws&, Parallel&) const override { return {}; }
+  static Parameters<FakeLiveProblem> parameters() { return {}; }
+
+ private:
+  Spaces spaces_{{{"x", "m", 0, 1}}, {{"left", {}}, {"right", {}}}};
+};
+const Component<Problem, FakeLiveProblem> kFakeProblem("fake_live_problem", "A robot.", "no publication");
+
+Element collect(const std::string& id) {
+  return element("collect", {{"id", id}, {"problem", "car"}, {"policy", "p"}, {"episodes", "1"}});
+}
+
+Sub<Node> training(Attributes solver = {}, Attributes more = {}) {
+  more.insert(more.begin(), {{"id", "t"}, {"problem", "car"}});
+  return make_node(element("train", more, {element("fake_solver", solver)}));
+}
+
+void give_problem(FakeContext& context, const std::string& problem = "double_integrator") {
+  context.given["problem"] = {input(element("problem", {{"id", "car"}}, {element(problem, {})}))};
+}
+
+TEST(Train, WritesThePolicyAndARowForEachUnitOfWork) {
+  FakeContext context;
+  give_problem(context);
+  const auto node = training();
+  node->check(context);
+  node->run(context);
+  const PolicyFile policy = read_policy_file(context.folder() / kPolicyFile);
+  EXPECT_EQ(policy.component.name, "constant");
+  EXPECT_EQ(policy.provenance, context.key());
+  EXPECT_EQ(policy.spaces.states.front().name, "position");
+  const Table progress = read_table(context.folder() / kProgressFile);
+  ASSERT_EQ(progress.rows.size(), 6u);
+  ASSERT_EQ(progress.columns.size(), 3u);
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(number(progress.rows[static_cast<std::size_t>(i)][0]), i + 1);
+  EXPECT_EQ(cell_text(progress.rows[0][progress.column("even")]), "") << "that unit did not measure it";
+  EXPECT_EQ(number(progress.rows[1][progress.column("even")]), 2);
+  EXPECT_EQ(context.counts.at("iterations"), 6);
+}
+
+TEST(Train, ResumedGivesTheBytesOfATrainingNeverStopped) {
+  FakeContext straight, stopped;
+  for (FakeContext* context : {&straight, &stopped}) give_problem(*context);
+  const auto node = training();
+  node->run(straight);
+  int interruptions = 0;
+  for (;; ++interruptions) {
+    stopped.serial.patience = 2;  // two units of work each time
+    try {
+      node->run(stopped);
+      break;
+    } catch (const Interrupted&) {
+      ASSERT_LT(interruptions, 5);
+    }
+  }
+  EXPECT_EQ(interruptions, 2);
+  for (const auto& file : {kPolicyFile, kProgressFile}) {
+    EXPECT_EQ(text_of(stopped.folder() / file), text_of(straight.folder() / file));
+  }
+}
+
+TEST(Train, BeginsAnewAfterAnUnreadableCheckpoint) {
+  FakeContext straight, damaged;
+  for (FakeContext* context : {&straight, &damaged}) give_problem(*context);
+  const auto node = training();
+  node->run(straight);
+  damaged.saved.emplace();
+  damaged.saved->put("training/done", std::vector<std::int64_t>{3});
+  damaged.saved->put("training/sum", std::vector<double>{1e9});
+  node->run(damaged);
+  EXPECT_EQ(text_of(damaged.folder() / kPolicyFile), text_of(straight.folder() / kPolicyFile));
+}
+
+TEST(Train, JoinsTheSamplesOfSeveralNodes) {
+  FakeContext one, two, both;
+  FakeContext* collecting[] = {&one, &two};
+  for (FakeContext* context : collecting) {
+    give_problem(*context);
+    context->given["policy"] = {input(element("policy", {{"id", "p"}}, {element("random", {})}))};
+    make_node(collect("c"))->run(*context);
+  }
+  give_problem(both);
+  both.given["samples"] = {input(collect("c"), one.folder()), input(collect("d"), two.folder())};
+  training({{"samples", "true"}}, {{"samples", "c, d"}})->run(both);
+  EXPECT_EQ(both.counts.at("samples"), one.counts.at("steps") + two.counts.at("steps"));
+}
+
+TEST(Train, SaysWhatTheSolverNeeds) {
+  FakeContext car, live;
+  give_problem(car);
+  give_problem(live, "fake_live_problem");
+  const auto error = [](const FakeContext& context, const Attributes& solver) {
+    return error_of([&] { training(solver)->check(context); });
+  };
+  EXPECT_THAT(error(car, {{"samples", "true"}}), HasSubstr("give samples="));
+  EXPECT_EQ(error(car, {{"simulator", "true"}, {"single_action", "true"}}), "");
+  EXPECT_THAT(error(live, {{"simulator", "true"}}), HasSubstr("only offers episodes"));
+  EXPECT_THAT(error(live, {{"single_action", "true"}}), HasSubstr("has 2 actions"));
+}
+
+}  // namespace
+}  // namespace coppice::testing

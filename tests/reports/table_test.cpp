@@ -1,0 +1,140 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/data/table_file.h"
+#include "engine/graph/artifacts.h"
+#include "tests/engine/graph/nodes/fake_context.h"
+
+namespace coppice::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using Attributes = std::vector<std::pair<std::string, std::string>>;
+
+/// An evaluation made by hand.
+struct Evaluation {
+  std::string policy;
+  std::optional<int> replicate;
+  double mean_return = 0, sd = 0;
+  std::int64_t episodes = 1;
+  double terminal_rate = 0;
+};
+
+class TableTest : public ::testing::Test {
+ protected:
+  void give(const std::vector<Evaluation>& evaluations) {
+    std::vector<InputNode>& nodes = context.given["of"];
+    for (const Evaluation& made : evaluations) {
+      InputNode& node = nodes.emplace_back();
+      node.id = "scores";
+      node.replicate = made.replicate;
+      node.labels = {{"problem", "car"}, {"policy", made.policy}};
+      node.folder = context.folder() / std::to_string(nodes.size());
+      std::filesystem::create_directory(node.folder);
+      write_file(node.folder / kEvaluationFile,
+                 "episodes,mean_return,sd,mean_discounted_return,sd_discounted_return,mean_steps,sd_steps,"
+                 "terminal_rate\n" +
+                     cell_text(made.episodes) + "," + cell_text(made.mean_return) + "," + cell_text(made.sd) +
+                     ",-2,,7,," + cell_text(made.terminal_rate) + "\n");
+    }
+  }
+  /// Makes the table and returns it.
+  Table made(Attributes attributes = {}) {
+    attributes.insert(attributes.begin(), {{"id", "t"}, {"of", "scores"}, {"rows", "policy"}});
+    const Sub<Node> node = make_node(element("table", attributes));
+    node->check(context);
+    node->run(context);
+    return read_table(context.folder() / kTableFile);
+  }
+  static double value(const Table& table, std::size_t row, const char* column) {
+    return number(table.rows.at(row).at(table.column(column)));
+  }
+  std::string file(const std::string& name, const std::string& text) {
+    write_file(context.folder() / name, text);
+    return (context.folder() / name).string();
+  }
+
+  FakeContext context;
+};
+
+TEST_F(TableTest, SummarizesTrainingRuns) {
+  // Costs 1, 2, 3, 6: mean 3, deviation sqrt(14/3), t(0.975, 3) = 3.182446, interquartile mean of 2 and 3.
+  give({{"fpf", 0, -1, 9, 10}, {"fpf", 1, -2, 9, 10}, {"fpf", 2, -6, 9, 10}, {"fpf", 3, -3, 9, 10}});
+  const Table table = made();
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(cell_text(table.rows[0][0]), "fpf");
+  EXPECT_EQ(value(table, 0, "n_replicates"), 4);
+  EXPECT_EQ(value(table, 0, "episodes"), 10);
+  EXPECT_NEAR(value(table, 0, "mean"), 3, 1e-12);
+  const double half = 3.182446305284 * std::sqrt(14.0 / 3 / 4);
+  EXPECT_NEAR(value(table, 0, "ci95_low"), 3 - half, 1e-9) << "the deviation over episodes plays no part";
+  EXPECT_NEAR(value(table, 0, "ci95_high"), 3 + half, 1e-9);
+  EXPECT_NEAR(value(table, 0, "iqm"), 2.5, 1e-12);
+  EXPECT_EQ(value(table, 0, "worst"), 6);
+  EXPECT_EQ(value(table, 0, "best"), 1);
+}
+
+TEST_F(TableTest, TakesEpisodesAsUnitWhereThereAreNoReplicates) {
+  give({{"lqr", {}, -3, 2, 16}});
+  const Table table = made();
+  const double half = 2.131449545559 * 2 / 4;  // t(0.975, 15)
+  EXPECT_EQ(value(table, 0, "n_replicates"), 1);
+  EXPECT_NEAR(value(table, 0, "ci95_low"), 3 - half, 1e-9);
+  EXPECT_NEAR(value(table, 0, "ci95_high"), 3 + half, 1e-9);
+}
+
+TEST_F(TableTest, GivesNoIntervalForOneTrainingRun) {
+  give({{"fpf", 0, -3, 2, 16}});
+  EXPECT_TRUE(std::isnan(value(made(), 0, "ci95_low"))) << "its episodes say nothing of other training runs";
+}
+
+TEST_F(TableTest, KnowsWhichEndIsGood) {
+  give({{"fpf", 0, -1}, {"fpf", 1, -2}});
+  const Table returns = made({{"metric", "return"}});
+  EXPECT_EQ(value(returns, 0, "mean"), -1.5);
+  EXPECT_EQ(value(returns, 0, "worst"), -2);
+  EXPECT_EQ(value(returns, 0, "best"), -1);
+  EXPECT_EQ(value(made({{"metric", "discounted_cost"}}), 0, "mean"), 2);
+  EXPECT_EQ(value(made({{"metric", "steps"}}), 0, "mean"), 7);
+}
+
+TEST_F(TableTest, DoubtsARateThatWasAlwaysZero) {
+  give({{"lqr", {}, -1, 0, 20, 0}});
+  const Table table = made({{"metric", "terminal_rate"}});
+  EXPECT_NEAR(value(table, 0, "ci95_low"), 0, 1e-12);
+  const double z2 = 1.959963984540 * 1.959963984540;
+  EXPECT_NEAR(value(table, 0, "ci95_high"), z2 / (20 + z2), 1e-9) << "Wilson's interval for 0 of n";
+}
+
+TEST_F(TableTest, PutsPublishedAndReferenceValuesBeside) {
+  give({{"fpf", 0, -1}, {"lqr", {}, -1}});
+  const std::string published = file("published.csv", "policy,value,source\nfpf,3.5,thesis\nother,1,\n");
+  const Table table = made({{"published", published}, {"reference", "3.4227"}});
+  EXPECT_EQ(value(table, 0, "published"), 3.5);
+  EXPECT_EQ(cell_text(table.rows[1][table.column("published")]), "");
+  EXPECT_EQ(value(table, 1, "reference"), 3.4227);
+  const std::string everywhere = file("best.csv", "value\n2\n");
+  EXPECT_EQ(value(made({{"reference_file", everywhere}}), 1, "reference"), 2);
+}
+
+TEST_F(TableTest, SaysWhatIsWrongWithKnownValues) {
+  give({{"fpf", 0, -1}});
+  const auto error = [&](const std::string& csv) {
+    return error_of([&] { made({{"published", file("known.csv", csv)}}); });
+  };
+  EXPECT_THAT(error("polcy,value\nfpf,1\n"),
+              AllOf(HasSubstr("known.csv"), HasSubstr("did you mean 'policy'")));
+  EXPECT_THAT(error("policy\nfpf\n"), HasSubstr("no column 'value'"));
+  EXPECT_THAT(error("policy,value\nfqi,1\n"), HasSubstr("none of its rows"));
+  EXPECT_THAT(error("policy,value\nfpf,1\nfpf,2\n"), HasSubstr("two values for fpf"));
+  EXPECT_THAT(error_of([&] {
+                made({{"reference", "1"}, {"reference_file", file("r.csv", "value\n1\n")}});
+              }),
+              HasSubstr("either reference"));
+}
+
+}  // namespace
+}  // namespace coppice::testing
