@@ -81,12 +81,18 @@ std::size_t folders_in(const fs::path& folder) {
   return count;
 }
 
+std::size_t files_in(const fs::path& folder) {
+  std::size_t count = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) count += entry.is_regular_file();
+  return count;
+}
+
 TEST(StoreCrash, NothingAcknowledgedIsLostAndNothingIsHalfThere) {
   constexpr int kKills = 40;
   constexpr int kResults = 1000;
   const TemporaryFolder temporary;
   const fs::path folder = temporary.path() / "store";
-  int acknowledged = 0, killed_while_working = 0;
+  int acknowledged = 0, killed_while_working = 0, killed_within_commits = 0;
   for (int kill = 0; kill < kKills; ++kill) {
     int pipe[2];
     ASSERT_EQ(::pipe(pipe), 0);
@@ -106,6 +112,7 @@ TEST(StoreCrash, NothingAcknowledgedIsLostAndNothingIsHalfThere) {
     if (WIFSIGNALED(status_of(child))) ++killed_while_working;
     while (::read(pipe[0], &byte, 1) == 1) ++acknowledged;
     ::close(pipe[0]);
+    if (files_in(folder / "tmp") > 1) ++killed_within_commits;  // one is the lock
     const StoreReader store(folder);
     for (int number = 0; number < acknowledged; ++number) {
       ASSERT_TRUE(check(store, number)) << "lost result " << number << " after " << kill << " kills";
@@ -114,6 +121,7 @@ TEST(StoreCrash, NothingAcknowledgedIsLostAndNothingIsHalfThere) {
     ASSERT_FALSE(check(store, acknowledged + 1));
   }
   EXPECT_EQ(killed_while_working, kKills);
+  EXPECT_GT(killed_within_commits, 0);
   EXPECT_GE(acknowledged, 2 * kKills);
   const Store store(folder);
   EXPECT_EQ(folders_in(folder / "tmp"), 1u) << "leftovers of killed processes";
