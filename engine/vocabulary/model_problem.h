@@ -111,6 +111,11 @@ class ModelProblem final : public Problem, public Simulator {
     check(state, 0, draws);
     return state;
   }
+  static double value_of(const State& state, const Simulation& simulation) {
+    double value = 0;
+    simulation.terminal_value->predict(state, {&value, 1});
+    return value;
+  }
   void roll(const Simulation&, std::size_t rollout, const Draws&, Buffers&, Returns&) const;
 
   M model_;
@@ -150,10 +155,11 @@ void ModelProblem<M>::roll(const Simulation& simulation, std::size_t rollout, co
   int t = 0;
   for (; t < simulation.horizon && !terminal; ++t) {
     const auto step = static_cast<std::uint32_t>(t);
-    if (t == 0 && !simulation.first_actions.empty())
+    if (t == 0 && !simulation.first_actions.empty()) {
       buffers.action = simulation.first_actions[rollout];
-    else
+    } else {
       simulation.policy->act(state, buffers.memory, agent.step(step), buffers.action);
+    }
     clamp_in_place(buffers.action, spaces_.actions);
     const Transition<State> made = transition(state, buffers.action, world.step(step));
     total += made.reward;
@@ -163,11 +169,7 @@ void ModelProblem<M>::roll(const Simulation& simulation, std::size_t rollout, co
     state = made.next;
     if (recorded) buffers.episode.add(buffers.action, made.reward, state);
   }
-  if (!terminal && simulation.terminal_value != nullptr) {
-    double value = 0;
-    simulation.terminal_value->predict(state, {&value, 1});
-    discounted += weight * value;
-  }
+  if (!terminal && simulation.terminal_value != nullptr) discounted += weight * value_of(state, simulation);
   if (recorded) {
     buffers.episode.terminal = terminal;
     simulation.recorder->episode(rollout, world.scenario(), buffers.episode);
