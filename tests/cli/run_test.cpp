@@ -36,10 +36,10 @@ class Runs : public testing::Test {
 </experiment>
 )");
     folder_.write("long.xml", R"(<experiment coppice="1" seed="3">
-  <arg name="episodes" default="60000"/>
+  <arg name="episodes" default="100000"/>
   <problem id="car"><double_integrator start="uniform"/></problem>
-  <policy id="random"><random/></policy>
-  <evaluate id="scores" problem="car" policies="random" episodes="${episodes}" returns="false"/>
+  <policy id="lqr"><linear_feedback gains="0.687, 1.177"/></policy>
+  <evaluate id="scores" problem="car" policies="lqr" episodes="${episodes}" returns="false"/>
 </experiment>
 )");
   }

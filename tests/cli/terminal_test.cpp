@@ -68,8 +68,8 @@ class Terminal : public testing::Test {
   Terminal() {
     folder_.write("long.xml", R"(<experiment coppice="1" seed="3">
   <problem id="car"><double_integrator start="uniform"/></problem>
-  <policy id="random"><random/></policy>
-  <evaluate id="scores_of_a_policy_with_quite_a_long_name" problem="car" policies="random" episodes="40000"
+  <policy id="lqr"><linear_feedback gains="0.687, 1.177"/></policy>
+  <evaluate id="scores_of_a_policy_with_quite_a_long_name" problem="car" policies="lqr" episodes="40000"
             replicates="3"/>
 </experiment>
 )");
