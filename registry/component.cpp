@@ -74,23 +74,6 @@ void verify_names(const ComponentInfo& info, const std::string& owner, const Cat
   }
 }
 
-void collect_versions(std::string_view interface, const Element& element, std::set<std::string>& versions) {
-  const ComponentInfo* info = Catalogue::instance().find(interface, element.name);
-  if (info == nullptr) {
-    throw std::logic_error(
-        fmt::format("no {} '{}' although its element was resolved", interface, element.name));
-  }
-  versions.insert(fmt::format("{}/{}@{}", interface, element.name, info->version));
-  for (const SlotInfo& slot : info->slots) {
-    const Element* holder = slot.direct ? &element : element.child(slot.name);
-    if (holder == nullptr) continue;
-    for (const Element& part : holder->children) {
-      if (slot.direct && Catalogue::instance().find(slot.interface, part.name) == nullptr) continue;
-      collect_versions(slot.interface, part, versions);
-    }
-  }
-}
-
 }  // namespace
 
 Catalogue& Catalogue::instance() {
@@ -153,12 +136,6 @@ void Catalogue::verify() const {
   }
   if (!problems.empty())
     throw std::logic_error("the catalogue of components is broken:\n  " + join(problems, "\n  "));
-}
-
-std::string component_versions(std::string_view interface, const Element& resolved) {
-  std::set<std::string> versions;
-  collect_versions(interface, resolved, versions);
-  return join({versions.begin(), versions.end()}, " ");
 }
 
 std::shared_ptr<void> detail::make_component(std::string_view interface, const Element& element,

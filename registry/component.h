@@ -47,10 +47,6 @@ class Catalogue {
   std::vector<std::string> problems_;
 };
 
-/// Every component of a resolved element, itself included, with its version: "solver/fqi@1
-/// approximator/extra_trees@2", sorted, each once. For cache keys.
-std::string component_versions(std::string_view interface, const Element& resolved);
-
 /// Turns a plain struct into an interface; specialised beside interfaces that accept plain structs (Problem).
 /// Has `static std::shared_ptr<Interface> make(T object, std::string component_name)`.
 template <class Interface>

@@ -249,13 +249,5 @@ TEST(Catalogue, VerifyNamesEveryMistakeOfADeclaration) {
             std::string::npos);
 }
 
-TEST(Versions, ListEveryComponentOnceSorted) {
-  const Sub<test::Drawing> sheet = made<test::Drawing>(
-      "<sheet id=\"a\"><heap><parts><box/><box/><circle radius=\"1\"/></parts></heap></sheet>");
-  EXPECT_EQ(component_versions("test_drawing", sheet.resolved),
-            "test_drawing/sheet@1 test_pen/pencil@1 test_shape/box@3 test_shape/circle@2 test_shape/heap@1");
-  EXPECT_THROW(component_versions("test_drawing", parse("<shet/>")), std::logic_error);
-}
-
 }  // namespace
 }  // namespace coppice

@@ -4,8 +4,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -13,6 +11,7 @@
 
 #include "registry/component.h"
 #include "registry/source.h"
+#include "tests/support/temporary_folder.h"
 
 namespace coppice {
 namespace {
@@ -181,15 +180,13 @@ TEST(Parameters, ReportAllMistakesOfAnElement) {
 }
 
 TEST(Parameters, FileIsRelativeToTheConfig) {
-  const auto folder = std::filesystem::temp_directory_path() / "coppice_parameters_test";
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "samples.csv") << "x\n";
+  const TemporaryFolder folder;
+  folder.write("samples.csv", "x\n");
   const std::string config = (folder / "config.xml").string();
   EXPECT_EQ(read(R"(data="samples.csv")", config).value.data.path, (folder / "samples.csv").string());
   EXPECT_EQ(read(R"(data="./samples.csv")", config).resolved.get("data"), (folder / "samples.csv").string());
   EXPECT_NE(read(R"(data="sample.csv")", config).text.find("did you mean 'samples.csv'?"), std::string::npos);
   EXPECT_NE(read(R"(data=".")", config).text.find("is a folder"), std::string::npos);
-  std::filesystem::remove_all(folder);
 }
 
 /// References and required parameters.

@@ -7,6 +7,7 @@
 
 #include "tests/registry/drawing.h"
 #include "tests/registry/helpers.h"
+#include "tests/support/temporary_folder.h"
 
 namespace coppice {
 namespace {
@@ -51,9 +52,7 @@ Catalogue drawings() {
 
 class Schema : public testing::Test {
  protected:
-  Schema() : folder_("schema") {
-    folder_.write("album.xsd", xml_schema(drawings(), test::drawing_language()));
-  }
+  Schema() { folder_.write("album.xsd", xml_schema(drawings(), test::drawing_language())); }
 
   /// Whether xmllint accepts a file; 0 is its status for a valid one, 3 for an invalid one.
   int status(const std::string& text) const {
@@ -71,7 +70,7 @@ class Schema : public testing::Test {
   }
 
  private:
-  test::TemporaryFolder folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(Schema, AcceptsWhatTheLanguageAllows) {

@@ -6,17 +6,17 @@
 #include <fstream>
 
 #include "tests/registry/helpers.h"
+#include "tests/support/temporary_folder.h"
 
 namespace coppice {
 namespace {
 
 using test::mistakes_of;
 using test::parse;
-using test::TemporaryFolder;
 
-std::string mistake_of_file(const std::string& path, std::size_t largest = std::size_t{64} << 20u) {
+std::string mistake_of_file(const std::filesystem::path& path, std::size_t largest = std::size_t{64} << 20u) {
   try {
-    read_source(path, largest);
+    read_source(path.string(), largest);
     return "";
   } catch (const ConfigError& error) {
     return error.what();
@@ -24,21 +24,21 @@ std::string mistake_of_file(const std::string& path, std::size_t largest = std::
 }
 
 TEST(ReadSource, KeepsTheTextAndThePath) {
-  const TemporaryFolder folder("source");
-  const std::string path = folder.write("a.xml", "<a>\n</a>\n");
+  const TemporaryFolder folder;
+  const std::string path = folder.write("a.xml", "<a>\n</a>\n").string();
   const auto source = read_source(path);
   EXPECT_EQ(source->path, path);
   EXPECT_EQ(source->text, "<a>\n</a>\n");
 }
 
 TEST(ReadSource, NormalizesLineEndsAndDropsTheByteOrderMark) {
-  const TemporaryFolder folder("source");
-  const std::string path = folder.write("a.xml", "\xEF\xBB\xBF<a>\r\n\r</a>\r\n");
+  const TemporaryFolder folder;
+  const std::string path = folder.write("a.xml", "\xEF\xBB\xBF<a>\r\n\r</a>\r\n").string();
   EXPECT_EQ(read_source(path)->text, "<a>\n\n</a>\n");
 }
 
 TEST(ReadSource, RefusesWhatIsNoTextFile) {
-  const TemporaryFolder folder("source");
+  const TemporaryFolder folder;
   folder.write("scale.xml", "<a/>");
   EXPECT_NE(mistake_of_file((folder.path() / "scales.xml").string()).find("No such file"), std::string::npos);
   EXPECT_NE(mistake_of_file((folder.path() / "scales.xml").string()).find("scale.xml'?"), std::string::npos);
@@ -58,8 +58,8 @@ TEST(ReadSource, RefusesHugeFilesWithoutReadingThemWhole) {
 }
 
 TEST(ReadSource, TellsTheSystemsReason) {
-  const TemporaryFolder folder("source");
-  const std::string path = folder.write("a.xml", "<a/>");
+  const TemporaryFolder folder;
+  const std::string path = folder.write("a.xml", "<a/>").string();
   std::filesystem::permissions(path, std::filesystem::perms::none);
   if (std::ifstream(path).good()) return;  // the superuser reads everything
   EXPECT_NE(mistake_of_file(path).find("Permission denied"), std::string::npos);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/registry/helpers.h"
+#include "tests/support/temporary_folder.h"
 
 namespace coppice {
 namespace {
@@ -59,7 +60,7 @@ TEST(Suggest, ShowsADozenNames) {
 }
 
 TEST(Suggest, FindsNearFiles) {
-  const test::TemporaryFolder folder("suggest");
+  const TemporaryFolder folder;
   folder.write("scale.xml", "x");
   EXPECT_EQ(nearest_file((folder.path() / "scales.xml").string()), "scale.xml");
   EXPECT_EQ(nearest_file((folder.path() / "nothing_like_it.csv").string()), "");
