@@ -1,11 +1,20 @@
 #!/bin/sh
-# Builds the tests with the address and undefined-behaviour sanitizers, then with the thread sanitizer, and runs them.
+# Builds the unit tests with the address and undefined-behaviour sanitizers and runs all of them; then those of the
+# engine, which has all the threads, with the thread sanitizer.
 #   scripts/test_sanitizers.sh [jobs]
 set -eu
 cd "$(dirname "$0")/.."
 jobs="${1:-$(nproc)}"
-for preset in asan tsan; do
+
+check() {  # preset, tests...
+  preset=$1
+  shift
   cmake --preset "$preset" --log-level=WARNING
-  cmake --build "build-$preset" -j "$jobs"
-  ctest --test-dir "build-$preset" --output-on-failure -j "$jobs" -L "$preset"
-done
+  cmake --build "build-$preset" -j "$jobs" --target "$@"
+  for tests in "$@"; do
+    echo "$preset: $tests"
+    "build-$preset/$tests" --gtest_brief=1
+  done
+}
+check asan test_registry test_engine test_problems test_solvers test_reports test_conformance
+check tsan test_engine
