@@ -195,8 +195,14 @@ void Executor::skip_dependants(const Job& job) {
     if (dependant.state != Job::State::waiting) continue;
     dependant.state = Job::State::skipped;
     ++totals_.skipped;
-    tell(dependant, "skipped", "an input failed: " + node_of(job).name, nullptr);
-    if (options_.listener != nullptr) options_.listener->skipped(report(dependant), totals());
+    const std::string why =
+        "its input " + node_of(job).name + (job.state == Job::State::failed ? " failed" : " was skipped");
+    tell(dependant, "skipped", why, nullptr);
+    if (options_.listener != nullptr) {
+      NodeReport skipped = report(dependant);
+      skipped.message = why;
+      options_.listener->skipped(skipped, totals());
+    }
     skip_dependants(dependant);
   }
 }

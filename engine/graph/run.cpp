@@ -82,20 +82,20 @@ class FolderUpdate {
     };
     const std::string finished = timestamp();
     attempt([&] { w.folder.join_tables(w.plan); });
-    attempt([&] { w.folder.save(); });
     const std::string outcome = interrupted ? "interrupted" : w.failed || !wrong.empty() ? "failed" : "done";
     attempt([&] { write_provenance(w.folder.path() / "provenance.json", provenance(outcome, finished)); });
     if (w.journal) attempt([&] { w.journal->write(event_of_run(outcome)); });
     index.end_run(w.plan.experiment.name, w.started, finished, outcome);
     if (options_.page) attempt([&] { options_.page(w.folder.path()); });
+    attempt([&] { w.folder.save(); });  // last: from now on the folder counts as finished
     return wrong;
   }
 
  private:
   /// True for a result that is known but does not lie in the folder as it should.
   bool is_to_place(std::size_t node) const {
-    return workspace_.statuses[node].reason == Reason::up_to_date &&
-           !workspace_.folder.intact(workspace_.plan.nodes[node]);
+    const NodeStatus& status = workspace_.statuses[node];
+    return status.reason == Reason::up_to_date && !status.placed;
   }
 
   /// Places of the folder whose content stays.
@@ -104,7 +104,7 @@ class FolderUpdate {
     for (std::size_t i = 0; i < workspace_.plan.nodes.size(); ++i) {
       const PlannedNode& node = workspace_.plan.nodes[i];
       if (!node.node->labelled_tables().empty()) keep.push_back(RunFolder::joined_table(node.id));
-      if (!workspace_.statuses[i].runs && workspace_.folder.intact(node)) keep.push_back(node.folder);
+      if (!workspace_.statuses[i].runs && workspace_.statuses[i].placed) keep.push_back(node.folder);
     }
     return keep;
   }
@@ -144,6 +144,14 @@ Workspaces open_workspaces(const std::vector<Plan>& plans, const RunOptions& opt
   return workspaces;
 }
 
+/// True when a killed process may have left something that opening the store removes.
+bool has_leftovers(const fs::path& store) {
+  std::error_code code;
+  const fs::directory_iterator entries(store / "tmp", code);
+  return !code && std::any_of(fs::begin(entries), fs::end(entries),
+                              [](const fs::directory_entry& entry) { return entry.is_directory(); });
+}
+
 std::size_t up_to_date(const Workspaces& workspaces) {
   std::size_t count = 0;
   for (const auto& workspace : workspaces) {
@@ -166,8 +174,10 @@ RunOutcome run(const std::vector<Plan>& plans, const RunOptions& given) {
   }
   RunOutcome outcome;
   outcome.totals.up_to_date = up_to_date(workspaces);
-  if (updates.empty()) return outcome;
-
+  if (updates.empty()) {
+    if (has_leftovers(options.out / "store")) Store(options.out / "store");
+    return outcome;
+  }
   Store store(options.out / "store");
   Index index(options.out);
   try {

@@ -95,10 +95,13 @@ class Inspector {
     NodeStatus status;
     if (node.definition) {
       status.reason = Reason::definition;
-    } else if (forced) {
+      return status;
+    }
+    status.placed = folder_.intact(node);
+    if (forced) {
       status.reason = Reason::forced;
       status.runs = true;
-    } else if (folder_.intact(node) || store_.find(node.key)) {
+    } else if (status.placed || store_.find(node.key)) {
       status.reason = Reason::up_to_date;
     } else {
       status.runs = true;
@@ -175,8 +178,8 @@ std::vector<NodeStatus> inspect(const Plan& plan, const Selection& selection,
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
     statuses[i] = inspector.status(i, selected.forced[i]);
     if (!selected.in[i] && !plan.nodes[i].definition) {
-      statuses[i] = {};
       statuses[i].reason = Reason::not_selected;
+      statuses[i].runs = false;
     }
     any = any || statuses[i].runs;
   }

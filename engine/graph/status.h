@@ -23,6 +23,7 @@ struct Change {
 struct NodeStatus {
   Reason reason = Reason::new_node;
   bool runs = false;            ///< false when its result is there, if only in the store, from another run
+  bool placed = false;          ///< its result lies in the run folder
   std::vector<Change> changes;  ///< of `changed`
   std::optional<double> predicted_s;  ///< from recorded durations; none without evidence
 };
