@@ -24,6 +24,7 @@ struct ComponentInfo {
   std::vector<SlotInfo> slots;
   /// Makes the object (a shared_ptr<Interface>) and its resolved element; null after an error.
   std::function<std::shared_ptr<void>(const Element&, Element* resolved, Diagnostics&)> make;
+  std::string example{};  ///< XML; empty: one is made from the parameters
 };
 
 /// All registered components.
@@ -54,18 +55,22 @@ struct Adapter;
 
 /// Registers T as a component of Interface; a constant at namespace scope in T's source file. T's parameters
 /// come from `static Parameters<T> T::parameters()`; relations between them from an optional `void T::check()
-/// const`, which throws std::invalid_argument with the broken rule.
+/// const`, which throws std::invalid_argument with the broken rule. An optional `static constexpr const char*
+/// kExample` is shown as example, where one made from required parameters would break such a relation.
 template <class Interface, class T>
 class Component {
  public:
   Component(std::string name, std::string doc, std::string source, int version = 1) {
     const Parameters<T> parameters = T::parameters();
+    std::string example;
+    if constexpr (requires { T::kExample; }) example = T::kExample;
     Catalogue::instance().add(
         {Interface::kInterface, std::move(name), std::move(doc), std::move(source), version,
          parameters.parameters(), parameters.slots(),
          [parameters](const Element& element, Element* resolved, Diagnostics& diagnostics) {
            return make(parameters, element, resolved, diagnostics);
-         }});
+         },
+         std::move(example)});
   }
 
  private:

@@ -175,7 +175,8 @@ std::vector<std::string> common_parameters(const Catalogue& catalogue, std::stri
 }
 
 Element example_of(const Catalogue& catalogue, const ComponentInfo& info) {
-  return example(catalogue, info, 0);
+  if (info.example.empty()) return example(catalogue, info, 0);
+  return parse_xml(std::make_shared<const SourceFile>(SourceFile{"example of " + info.name, info.example}));
 }
 
 std::string describe_text(const Catalogue& catalogue, const ComponentInfo& info, std::size_t width) {

@@ -17,6 +17,7 @@ namespace {
 /// The name of the experiment becomes a folder beside the store.
 void check_name(const ExperimentConfig& experiment, Diagnostics& diagnostics) {
   const std::string& name = experiment.name;
+  if (name.empty() && !experiment.complete) return;  // the file was not read so far; that is reported
   const auto allowed = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
            std::string_view("_-.").find(c) != std::string_view::npos;

@@ -17,7 +17,13 @@
 namespace coppice {
 namespace {
 
-const std::filesystem::path kFolder = std::filesystem::path(COPPICE_SOURCE_DIR) / "tests/golden/problems";
+/// COPPICE_GOLDEN_DIR names another folder of goldens (for components from elsewhere).
+std::filesystem::path golden_folder() {
+  const char* given = std::getenv("COPPICE_GOLDEN_DIR");
+  const std::filesystem::path own = std::filesystem::path(COPPICE_SOURCE_DIR) / "tests/golden";
+  return (given != nullptr ? std::filesystem::path(given) : own) / "problems";
+}
+const std::filesystem::path kFolder = golden_folder();
 constexpr double kTolerance = 1e-9;  // relative; across compilers and machines
 
 int version(const std::string& problem) {

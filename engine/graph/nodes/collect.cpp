@@ -12,6 +12,9 @@ namespace {
 /// A dataset of transitions: episodes of a policy, or single steps from states and actions drawn uniformly
 /// (as for the car on the hill: thesis 2.2.2; Ernst, Geurts and Wehenkel 2005).
 struct CollectNode : Node {
+  static constexpr const char* kExample =
+      "<collect id=\"samples\" problem=\"my_problem\" policy=\"my_policy\" episodes=\"100\"/>";
+
   using Node::check;
 
   Reference problem, policy;

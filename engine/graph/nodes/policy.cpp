@@ -8,6 +8,8 @@ namespace {
 /// A policy under a name: configured here, or trained elsewhere and saved in a file. With a problem, or from
 /// a file, it makes a policy file.
 struct PolicyNode : Node {
+  static constexpr const char* kExample = "<policy id=\"explorer\"><random/></policy>";
+
   using Node::check;
 
   Sub<Policy> policy;
