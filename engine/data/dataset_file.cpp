@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "engine/data/csv.h"
-#include "engine/data/table_file.h"
 #include "engine/data/file_system.h"
+#include "engine/data/table_file.h"
 #include "engine/vocabulary/dataset.h"
 #include "registry/source.h"
 #include "registry/suggest.h"

@@ -55,7 +55,8 @@ Table labelled(const Table& table, const PlannedNode& node) {
   std::vector<Label> labels;
   const std::vector<PointValue> given = distinct_labels(node);
   for (std::size_t i = 0; i < given.size(); ++i) {
-    const auto& [name, value] = given[i];
+    const std::string& name = given[i].first;
+    const std::string& value = given[i].second;
     const bool sweep = i < node.point.size();
     const auto same = [&](const PointValue& later) { return later.first == name; };
     const bool taken =

@@ -28,7 +28,9 @@ double exp(double x) {
 double log(double x) {
   return Sleef_cinz_logd1_u10purec(x);
 }
-double log1p(double x) { return Sleef_cinz_log1pd1_u10purec(x); }
+double log1p(double x) {
+  return Sleef_cinz_log1pd1_u10purec(x);
+}
 double pow(double x, double y) {
   return Sleef_cinz_powd1_u10purec(x, y);
 }

@@ -14,8 +14,8 @@
 
 namespace coppice {
 
-/// One search for the largest value of a (perhaps noisy) function over a box. Ask and tell: the candidates of one ask
-/// may be evaluated in parallel. Deterministic for its draws and the values told.
+/// One search for the largest value of a (perhaps noisy) function over a box. Ask and tell: the candidates of
+/// one ask may be evaluated in parallel. Deterministic for its draws and the values told.
 class Search {
  public:
   virtual ~Search() = default;

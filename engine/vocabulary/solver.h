@@ -17,9 +17,9 @@ namespace coppice {
 /// What a training gets. Referred-to objects outlive the training.
 struct TrainingInputs {
   const Problem* problem = nullptr;
-  const Dataset* samples = nullptr;    ///< null when the config gives none
-  MadeFunction value;                  ///< a value function learned elsewhere; may be empty
-  MadePolicy initial_policy;           ///< prepared; may be empty
+  const Dataset* samples = nullptr;  ///< null when the config gives none
+  MadeFunction value;                ///< a value function learned elsewhere; may be empty
+  MadePolicy initial_policy;         ///< prepared; may be empty
   Draws draws{0, "", 0};
 };
 
@@ -27,7 +27,8 @@ struct TrainingInputs {
 struct TrainingProgress {
   std::int64_t done = 0;   ///< units of work done
   std::int64_t total = 0;  ///< units of work in all, 0 when unknown
-  std::vector<std::pair<std::string, double>> measures;  ///< named values of this row ("bellman_residual", ...)
+  std::vector<std::pair<std::string, double>>
+      measures;  ///< named values of this row ("bellman_residual", ...)
 };
 
 /// What a training made.
@@ -40,8 +41,8 @@ struct TrainingResult {
 class Training {
  public:
   virtual ~Training() = default;
-  /// Does one unit of work (an iteration); returns false when there is nothing left to do. Deterministic: the state
-  /// after n units depends on inputs and n only.
+  /// Does one unit of work (an iteration); returns false when there is nothing left to do. Deterministic: the
+  /// state after n units depends on inputs and n only.
   virtual bool advance(Parallel& parallel) = 0;
   virtual TrainingProgress progress() const = 0;
   /// Everything that advance needs to go on bit-identically in a new process.
@@ -59,9 +60,9 @@ class Solver {
 
   /// What `start` will ask of its inputs, so that a config that lacks it is refused before anything runs.
   struct Needs {
-    bool samples = false;         ///< a dataset of transitions
-    bool simulator = false;       ///< a problem that can be set to any state
-    bool single_action = false;   ///< only one action id is supported
+    bool samples = false;        ///< a dataset of transitions
+    bool simulator = false;      ///< a problem that can be set to any state
+    bool single_action = false;  ///< only one action id is supported
   };
   virtual Needs needs() const = 0;
   /// Throws std::invalid_argument when the inputs cannot be used.

@@ -1,4 +1,5 @@
-// Costs of what learning and robots do most: draws, simulated steps, fitting, the best action, a policy's action.
+// Costs of what learning and robots do most: draws, simulated steps, fitting, the best action, a policy's
+// action.
 #include <benchmark/benchmark.h>
 
 #include "engine/vocabulary/approximator.h"
@@ -9,7 +10,8 @@ namespace coppice {
 namespace {
 
 template <class Interface>
-Sub<Interface> component(const std::string& name, const std::vector<std::pair<std::string, std::string>>& values = {}) {
+Sub<Interface> component(const std::string& name,
+                         const std::vector<std::pair<std::string, std::string>>& values = {}) {
   Element element;
   element.name = name;
   for (const auto& [attribute, value] : values) element.set(attribute, value);
@@ -33,7 +35,8 @@ struct Samples {
 
 MadeFunction forest(const Samples& samples) {
   Serial serial;
-  return component<Approximator>("extra_trees")->fit({samples.x, samples.y, {}}, Draws(1, "benchmark", 0), serial);
+  return component<Approximator>("extra_trees")
+      ->fit({samples.x, samples.y, {}}, Draws(1, "benchmark", 0), serial);
 }
 
 void draw_uniform(benchmark::State& state) {
