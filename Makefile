@@ -23,7 +23,7 @@ test:
 	@cmake --build build -j $(JOBS)
 	@$(CTEST) --test-dir build -LE slow
 
-## Everything else: sanitizers, the second compiler, formatting, long tests.
+## Everything else: formatting, sanitizers, warnings of the second compiler, long tests.
 test-all:
 	@scripts/install_packages.sh test-all
 	@scripts/check_format.sh

@@ -1,13 +1,10 @@
 #!/bin/sh
-# Builds the program with clang, warnings as errors, and learns the quick start with it.
+# Lets clang check every source of the program, warnings as errors. Needs a configured build/ (for generated headers).
 #   scripts/test_clang.sh [jobs]
 set -eu
 cd "$(dirname "$0")/.."
 jobs="${1:-$(nproc)}"
-cmake -S . -B build-clang -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=clang++ -DCOPPICE_TESTS=OFF \
-  --log-level=WARNING
-cmake --build build-clang -j "$jobs" --target runner
-out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
-build-clang/runner configs/quickstart.xml --out "$out" --progress none
-echo "clang: the quick start runs"
+git ls-files 'registry/*.cpp' 'engine/*.cpp' 'problems/*.cpp' 'solvers/*.cpp' 'reports/*.cpp' |
+  xargs -P "$jobs" -n 6 clang++ -fsyntax-only -std=c++20 -Wall -Wextra -Wpedantic -Wshadow -Wconversion \
+    -Wno-sign-conversion -Werror -DCOPPICE_VERSION='"0"' -DFMT_SHARED -I. -Ibuild -isystem /usr/include/eigen3
+echo "clang: all sources compile without a warning"
