@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -12,7 +11,7 @@
 #include "registry/text.h"
 #include "reports/html.h"
 #include "reports/page_style.h"
-#include "reports/table_view.h"
+#include "reports/published.h"
 
 namespace coppice {
 namespace {
@@ -75,69 +74,9 @@ std::string header(const RunRecord& record) {
   if (!outcome.empty()) facts.push_back(outcome);
   facts.push_back(text_of(record.provenance, "finished"));
   std::erase(facts, "");
-  return element("header", text_element("h1", name) + text_element("p", record.experiment.get("doc")) +
+  const std::string_view doc = record.experiment.get("doc");
+  return element("header", text_element("h1", name) + (doc.empty() ? "" : text_element("p", doc)) +
                                text_element("p", join(facts, " · "), {{"class", "soft"}}));
-}
-
-/// The element of the node that a published file belongs to; null when there is none. Files are called
-/// <id>.csv, or <id>.<sweep point>.csv.
-const Element* node_of_file(const Element& experiment, const std::string& file) {
-  const std::string id = file.substr(0, file.find('.'));
-  for (const Element& node : experiment.children) {
-    if (node.get("id") == id) return &node;
-  }
-  return nullptr;
-}
-
-/// The published tables of a folder, in the order of the experiment's nodes, then by name.
-std::vector<std::string> published_files(const RunRecord& record, const char* shelf) {
-  std::vector<std::string> files;
-  std::error_code code;
-  for (const fs::directory_entry& entry : fs::directory_iterator(record.folder / shelf, code)) {
-    if (entry.path().extension() == ".csv") files.push_back(entry.path().filename().string());
-  }
-  const auto rank = [&](const std::string& file) {
-    const Element* node = node_of_file(record.experiment, file);
-    return std::pair(node != nullptr ? node - record.experiment.children.data() : -1, file);
-  };
-  std::sort(files.begin(), files.end(),
-            [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
-  return files;
-}
-
-std::vector<std::string> list_of(std::string_view text) {
-  std::vector<std::string> items;
-  for (const std::string_view item : split_list(text)) items.emplace_back(item);
-  return items;
-}
-
-std::string published_table(const RunRecord& record, const std::string& path) {
-  const std::string file = fs::path(path).filename().string();
-  const Element* node = node_of_file(record.experiment, file);
-  TableKeys keys;
-  std::string title = fs::path(file).stem().string(), text;
-  if (node != nullptr) {
-    keys = {list_of(node->get("rows")), list_of(node->get("columns"))};
-    text = text_element("p", node->get("doc"));
-    if (const Attribute* metric = node->find("metric")) title += ": " + metric->value;
-  }
-  std::string content;
-  try {
-    content = table_view(read_table(record.folder / path), keys);
-  } catch (const std::runtime_error& unreadable) {
-    content = text_element("pre", unreadable.what());
-  }
-  const std::string source =
-      element("figcaption", "Data: " + text_element("a", path, {{"href", html::link(path)}}));
-  return text_element("h3", title) + text + element("figure", content + source);
-}
-
-std::string shelf(const RunRecord& record, const char* folder, const char* title) {
-  std::string content;
-  for (const std::string& file : published_files(record, folder)) {
-    content += published_table(record, std::string(folder) + "/" + file);
-  }
-  return content.empty() ? content : element("section", text_element("h2", title) + content);
 }
 
 /// How many nodes of an id are in which state.
@@ -219,8 +158,8 @@ struct Page : Report {
     head += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
     head += text_element("title", record.experiment.get("name"));
     head += element("style", kPageStyle);
-    std::string main = shelf(record, "tables", "Tables");
-    main += shelf(record, "figures", "Figures");
+    std::string main = published_section(record.folder, record.experiment, "tables", "Tables");
+    main += published_section(record.folder, record.experiment, "figures", "Figures");
     main += nodes(record);
     main += provenance(record);
     std::string page = "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n";

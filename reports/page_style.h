@@ -6,15 +6,15 @@ namespace coppice {
 
 /// The page's style sheet.
 inline constexpr std::string_view kPageStyle = R"(
-:root { color-scheme: light dark; --ink: #1f2328; --soft: #59636e; --paper: #fff; --line: #d1d9e0; --shade: #f6f8fa;
-  --good: #1a7f37; --bad: #cf222e; --open: #9a6700; }
+:root { color-scheme: light dark; --ink: #1f2328; --soft: #59636e; --paper: #fff; --line: #d1d9e0;
+  --shade: #f6f8fa; --good: #1a7f37; --bad: #cf222e; --open: #9a6700; }
 @media (prefers-color-scheme: dark) {
   :root { --ink: #e6edf3; --soft: #9198a1; --paper: #0d1117; --line: #3d444d; --shade: #151b23;
     --good: #3fb950; --bad: #f85149; --open: #d29922; }
 }
 * { box-sizing: border-box; }
-body { margin: 0 auto; padding: 2rem 1.25rem 4rem; max-width: 72rem; background: var(--paper); color: var(--ink);
-  font: 1rem/1.5 system-ui, "Segoe UI", "Helvetica Neue", Arial, sans-serif; }
+body { margin: 0 auto; padding: 2rem 1.25rem 4rem; max-width: 72rem; color: var(--ink);
+  background: var(--paper); font: 1rem/1.5 system-ui, "Segoe UI", "Helvetica Neue", Arial, sans-serif; }
 h1 { margin: 0; font-size: 1.9rem; }
 h2 { margin: 2.5rem 0 .5rem; padding-top: .6rem; border-top: 1px solid var(--line); font-size: 1.3rem; }
 h3 { margin: 1.75rem 0 .25rem; font-size: 1.05rem; }
@@ -31,8 +31,8 @@ thead small, td small { display: block; font-weight: 400; white-space: nowrap; }
 .number { text-align: right; }
 .interval { color: var(--soft); white-space: nowrap; }
 .done { color: var(--good); } .failed { color: var(--bad); } .missing { color: var(--open); }
-pre { margin: .25rem 0 1rem; padding: .75rem 1rem; overflow-x: auto; background: var(--shade); border-left: 3px solid
-  var(--bad); font-size: .85rem; white-space: pre-wrap; overflow-wrap: anywhere; }
+pre { margin: .25rem 0 1rem; padding: .75rem 1rem; overflow-x: auto; background: var(--shade);
+  border-left: 3px solid var(--bad); font-size: .85rem; white-space: pre-wrap; overflow-wrap: anywhere; }
 details { margin: .5rem 0; }
 summary { cursor: pointer; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: .2rem 1.25rem; margin: .5rem 0; }

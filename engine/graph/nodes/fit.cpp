@@ -109,9 +109,10 @@ struct FitNode : Node {
           "samples '{}' and test '{}' come from the same draws ({}): give '{}' a seed_label of its own",
           train.id, judge.id, judge.streams.front(), judge.id));
     }
-    if (train.key == judge.key) {
+    const std::string_view file = train.element.get("file");  // of datasets, which draw nothing
+    if (train.streams.empty() && !file.empty() && file == judge.element.get("file")) {
       throw std::invalid_argument(
-          fmt::format("samples '{}' and test '{}' are the same data", train.id, judge.id));
+          fmt::format("samples '{}' and test '{}' are the same file", train.id, judge.id));
     }
   }
 

@@ -85,10 +85,8 @@ TEST(Fit, RefusesATestSetFromTheDrawsOfTheSamples) {
   FakeContext context;
   InputNode train, test;
   train.id = "train";
-  train.key = "k1";
   train.streams = {"collect 0"};
   test.id = "test";
-  test.key = "k2";
   test.streams = {"collect 0"};
   context.given["samples"] = {train};
   context.given["test"] = {test};
@@ -103,14 +101,18 @@ TEST(Fit, RefusesATestSetFromTheDrawsOfTheSamples) {
 
 TEST(Fit, RefusesTheSameFileAsTest) {
   FakeContext context;
-  InputNode data;
-  data.key = "k";
-  context.given["samples"] = {data};
-  context.given["test"] = {data};
+  InputNode one, two;
+  one.element = element("dataset", {{"id", "one"}, {"file", "/data/a.csv"}});
+  two.element = element("dataset", {{"id", "two"}, {"file", "/data/a.csv"}});
+  context.given["samples"] = {one};
+  context.given["test"] = {two};
   EXPECT_THAT(error_of([&] {
                 fit("constant", {{"test", "test"}})->check(context);
               }),
-              HasSubstr("the same data"));
+              HasSubstr("the same file"));
+  two.element.set("file", "/data/b.csv");
+  context.given["test"] = {two};
+  EXPECT_EQ(error_of([&] { fit("constant", {{"test", "test"}})->check(context); }), "");
 }
 
 TEST(Fit, RefusesAnOutputThatIsAnInput) {
