@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
-#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <stdexcept>
 
 #include "engine/data/file_system.h"
@@ -10,6 +8,7 @@
 #include "engine/graph/status.h"
 #include "registry/text.h"
 #include "reports/html.h"
+#include "reports/node_section.h"
 #include "reports/page_style.h"
 #include "reports/published.h"
 
@@ -79,56 +78,12 @@ std::string header(const RunRecord& record) {
                                text_element("p", join(facts, " · "), {{"class", "soft"}}));
 }
 
-/// How many nodes of an id are in which state.
-struct Count {
-  std::size_t done = 0, failed = 0, all = 0;
-};
-
-std::string node_table(const RunRecord& record) {
-  std::map<std::string, Count> counts;
-  for (const NodeState& node : record.status.states) {
-    Count& count = counts[node.id];
-    ++count.all;
-    if (node.done) ++count.done;
-    if (!node.message.empty()) ++count.failed;
-  }
-  std::string body;
-  std::set<std::string> shown;
-  for (const Element& node : record.experiment.children) {
-    const auto found = counts.find(std::string(node.get("id")));
-    if (found == counts.end() || !shown.insert(found->first).second) continue;
-    const Count& count = found->second;
-    const char* state = count.failed > 0 ? "failed" : count.done == count.all ? "done" : "missing";
-    body += element(
-        "tr", text_element("th", found->first, {{"scope", "row"}}) + text_element("td", node.name) +
-                  text_element("td", state, {{"class", state}}) +
-                  text_element("td", fmt::format("{} / {}", count.done, count.all), {{"class", "number"}}) +
-                  text_element("td", node.get("doc")));
-  }
-  const char* columns[] = {"node", "kind", "state", "done", "what it is for"};
-  std::string cells;
-  for (const char* column : columns) cells += text_element("th", column, {{"scope", "col"}});
-  return element("figure", element("table", element("thead", element("tr", cells)) + element("tbody", body)));
-}
-
-std::string nodes(const RunRecord& record) {
-  const RunStatus& status = record.status;
-  std::string failures;
-  for (const NodeState& node : status.states) {
-    if (!node.message.empty()) failures += text_element("h3", node.name) + text_element("pre", node.message);
-  }
-  const std::string summary =
-      fmt::format("{} nodes: {} done, {} failed, {} missing.", status.nodes, status.finished, status.failed,
-                  status.nodes - status.finished - status.failed);
-  return element("section",
-                 text_element("h2", "Nodes") + text_element("p", summary) + failures + node_table(record));
-}
-
 std::string provenance(const RunRecord& record) {
   Json facts = Json::object();
   for (const char* name : {"config", "command", "threads", "started", "finished", "outcome"}) {
     if (const std::string text = text_of(record.provenance, name); !text.empty()) facts[name] = text;
   }
+  if (facts.contains("command")) facts["command"] = "runner " + facts["command"].get<std::string>();
   std::string content = definitions(facts);
   const auto fold = [&](const char* name, const char* title) {
     const auto found = record.provenance.find(name);
@@ -160,7 +115,7 @@ struct Page : Report {
     head += element("style", kPageStyle);
     std::string main = published_section(record.folder, record.experiment, "tables", "Tables");
     main += published_section(record.folder, record.experiment, "figures", "Figures");
-    main += nodes(record);
+    main += node_section(record.experiment, record.status);
     main += provenance(record);
     std::string page = "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n";
     page += element("head", head);

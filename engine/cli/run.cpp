@@ -9,13 +9,15 @@
 #include "engine/cli/layout.h"
 #include "engine/cli/progress.h"
 #include "engine/cli/selection.h"
+#include "engine/graph/report.h"
 
 namespace coppice::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The tables and figures that the nodes of a plan show, as far as they are there.
+/// The tables and figures that the nodes of a plan show, and the page with all of them, as far as they are
+/// there.
 std::string published_files(const Plan& plan, const fs::path& out) {
   std::string text, previous;
   for (const PlannedNode& node : plan.nodes) {
@@ -24,6 +26,8 @@ std::string published_files(const Plan& plan, const fs::path& out) {
     if (file.string() != previous && fs::exists(file)) text += file.string() + '\n';
     previous = file.string();
   }
+  const fs::path page = out / plan.experiment.name / "report.html";
+  if (fs::exists(page)) text += page.string() + '\n';
   return text;
 }
 
@@ -74,6 +78,7 @@ struct Run : ConfigInputs, SelectionInputs {
     options.stop = &interrupt_requested();
     options.listener = listener.get();
     options.command = line.arguments();
+    options.page = write_reports;
     const RunOutcome outcome = coppice::run(plans, options);
     if (progress == "auto" || progress == "plain") console.say(summary(console, outcome));
     for (const Plan& plan : plans) console.out(published_files(plan, out));
@@ -89,7 +94,8 @@ const Command<Run> kRun(
      .details =
          "The same command resumes a run that was interrupted or killed. The first Ctrl-C lets running nodes "
          "save their state and ends; the second ends at once. Either way nothing that was finished is lost. "
-         "The paths of the tables made are written to stdout, one per line.",
+         "The paths of the tables, of the figures' data and of the report are written to stdout, one per "
+         "line.",
      .examples = {{"runner configs/quickstart.xml", "Runs one experiment; results go to out/quickstart."},
                   {"runner run configs/quickstart.xml --out results -j 1 --progress plain",
                    "On one core, into another folder, with one line per finished node."},

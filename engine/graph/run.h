@@ -59,7 +59,7 @@ struct RunOptions {
   RunListener* listener = nullptr;
   std::filesystem::path runner;      ///< program for nodes with limits; empty: this one
   std::vector<std::string> command;  ///< recorded in provenance.json
-  /// Writes the page of a run folder; called when something in it changed, and at the end.
+  /// Writes the page of a run folder, report.html; called at the end of a run that changed something in it.
   std::function<void(const std::filesystem::path& run_folder)> page;
 };
 

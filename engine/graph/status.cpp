@@ -227,8 +227,8 @@ RunStatus read_status(const std::filesystem::path& run_folder) {
         fmt::format("{} is not the folder of a run: it has no resolved.xml", run_folder.string()));
   }
   const Plan plan = make_plan(expand(config.string(), {}));
-  const std::filesystem::path out = std::filesystem::absolute(run_folder).lexically_normal() / "..";
-  const std::vector<NodeStatus> statuses = inspect(plan, {}, out.lexically_normal());
+  const std::filesystem::path out = (std::filesystem::absolute(run_folder) / "..").lexically_normal();
+  const std::vector<NodeStatus> statuses = inspect(plan, {}, out);
   std::map<std::string, std::string> messages;
   for (const Event& event : read_events(run_folder / "events.jsonl")) {
     if (!event.node.empty()) messages[event.node] = event.what == "failed" ? event.message : std::string();
@@ -236,11 +236,17 @@ RunStatus read_status(const std::filesystem::path& run_folder) {
   RunStatus status;
   status.experiment = plan.experiment.name;
   status.running = RunFolder(run_folder).in_use();
+  const StoreReader store(out / "store");
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
     const PlannedNode& node = plan.nodes[i];
     if (node.definition) continue;
-    NodeState state{node.name, node.id, !statuses[i].runs, {}};
-    if (!state.done) state.message = messages[node.name];
+    NodeState state{node.name, node.id, !statuses[i].runs, {}, {}, {}};
+    if (!state.done) {
+      state.message = messages[node.name];
+    } else if (const std::optional<ResultRecord> record = store.read(node.key)) {
+      state.wall_s = record->wall_s;
+      state.cpu_s = record->cpu_s;
+    }
     ++status.nodes;
     if (state.done) ++status.finished;
     if (!state.message.empty()) {

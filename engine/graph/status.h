@@ -61,8 +61,9 @@ std::vector<Explanation> explain(const Plan& plan, std::string_view id_or_name,
 struct NodeState {
   std::string name;
   std::string id;
-  bool done = false;    ///< its result is there
-  std::string message;  ///< of its failure in the last run that tried it
+  bool done = false;                    ///< its result is there
+  std::string message;                  ///< of its failure in the last run that tried it
+  std::optional<double> wall_s, cpu_s;  ///< what computing its result took; none until it is there
 };
 
 /// A run folder as `runner status` and the page show it, also while the run goes on.

@@ -88,7 +88,7 @@ class Runs : public testing::Test {
 TEST_F(Runs, WriteTablesAndNameThemOnStdout) {
   const Ended ended = run("small.xml");
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_EQ(ended.out, "out/small/tables/costs.csv\n");
+  EXPECT_EQ(ended.out, "out/small/tables/costs.csv\nout/small/report.html\n");
   EXPECT_TRUE(contains(ended.err, "done: ")) << ended.err;
   const std::string table = TemporaryFolder::read(folder_ / "out/small/tables/costs.csv");
   EXPECT_TRUE(contains(table, "lqr")) << table;
@@ -102,7 +102,35 @@ TEST_F(Runs, AreUpToDateTheSecondTime) {
   const Ended again = run("run small.xml");
   EXPECT_EQ(again.status, 0);
   EXPECT_EQ(again.err, "everything is up to date: 5 nodes\n");
-  EXPECT_EQ(again.out, "out/small/tables/costs.csv\n");
+  EXPECT_EQ(again.out, "out/small/tables/costs.csv\nout/small/report.html\n");
+}
+
+TEST_F(Runs, ShowThemselvesOnAPage) {
+  ASSERT_EQ(run("small.xml").status, 0);
+  const fs::path file = folder_ / "out/small/report.html";
+  const std::string page = TemporaryFolder::read(file);
+  for (const std::string part : {"<h1>small</h1>", "seed 3 · done", "5 nodes: 5 done", ">lqr</th>",
+                                 "CPU time (s)", "runner small.xml"}) {
+    EXPECT_TRUE(contains(page, part)) << part;
+  }
+  fs::remove(file);
+  EXPECT_EQ(run("report").out, "out/small/report.html\n");
+  EXPECT_EQ(TemporaryFolder::read(file), page);
+  fs::remove(file);
+  EXPECT_EQ(run("report out/small").status, 0);
+  EXPECT_EQ(TemporaryFolder::read(file), page);
+  fs::remove(file);
+  ASSERT_EQ(run("small.xml").status, 0);
+  EXPECT_TRUE(fs::exists(file)) << "a missing page is something to do";
+  EXPECT_EQ(run("report nowhere").status, 2);
+}
+
+TEST_F(Runs, ShowFailuresOnThePageToo) {
+  EXPECT_EQ(run("failing.xml").status, 1);
+  const std::string page = TemporaryFolder::read(folder_ / "out/failing/report.html");
+  for (const std::string part : {"3 nodes: 1 done, 1 failed, 1 missing.", "<pre>", "time_limit"}) {
+    EXPECT_TRUE(contains(page, part)) << part;
+  }
 }
 
 TEST_F(Runs, DoWhatThePlanSays) {
@@ -153,7 +181,7 @@ TEST_F(Runs, ShowFailuresAndFinishTheRest) {
 TEST_F(Runs, StopWhenToldToAndGoOnLater) {
   ASSERT_EQ(run("long.xml -j 1 --out whole").status, 0);
   const Ended ended = script(
-      "$RUNNER long.xml -j 1 --progress json 2> log & pid=$!\n"
+      "$RUNNER long.xml -j 1 --progress json 2> log > paths & pid=$!\n"
       "until grep -q started log; do sleep 0.02; done\n"
       "kill -INT $pid; wait $pid; echo status $?");
   EXPECT_EQ(ended.out, "status 3\n") << ended.err;
@@ -164,7 +192,7 @@ TEST_F(Runs, StopWhenToldToAndGoOnLater) {
 
 TEST_F(Runs, StopAtOnceTheSecondTime) {
   const Ended ended = script(
-      "$RUNNER long.xml episodes:=900000000 --progress none & pid=$!\nsleep 0.5\n"
+      "$RUNNER long.xml episodes:=900000000 --progress none > paths & pid=$!\nsleep 0.5\n"
       "kill -INT $pid; kill -INT $pid; wait $pid; echo status $?");
   EXPECT_EQ(ended.out, "status 3\n") << ended.err;
 }

@@ -90,15 +90,17 @@ TEST_F(Terminal, ShowsAStatusAreaAndCleansItUp) {
   EXPECT_TRUE(contains(shown, "scores_of_a_policy")) << shown;
   std::vector<std::string> rows = screen(shown);
   while (!rows.empty() && rows.back().empty()) rows.pop_back();
-  ASSERT_EQ(rows.size(), 1U) << shown;
+  ASSERT_EQ(rows.size(), 2U) << shown;
   EXPECT_TRUE(rows[0].starts_with("done: 3 nodes run")) << rows[0];
+  EXPECT_EQ(rows[1], "out/long/report.html");
 }
 
 TEST_F(Terminal, SaysSoWhenAllIsUpToDate) {
   int status = 0;
   shown_on_terminal({"long.xml"}, folder_.path(), status);
   ASSERT_EQ(status, 0);
-  EXPECT_EQ(shown_on_terminal({"long.xml"}, folder_.path(), status), "everything is up to date: 3 nodes\r\n");
+  EXPECT_EQ(shown_on_terminal({"long.xml"}, folder_.path(), status),
+            "everything is up to date: 3 nodes\r\nout/long/report.html\r\n");
 }
 
 TEST_F(Terminal, ColoursMistakes) {

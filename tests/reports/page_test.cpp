@@ -29,7 +29,7 @@ class PageTest : public ::testing::Test {
              <table id="plain" of="scores" rows="policy" metric="cost"/>
            </experiment>)");
     put("provenance.json",
-        R"({"config": "a<b>.xml", "command": ["runner", "a<b>.xml"], "overrides": {"scale": "ci"},
+        R"({"config": "a<b>.xml", "command": ["a<b>.xml"], "overrides": {"scale": "ci"},
             "arguments": {"scale": "ci", "n": "3"}, "threads": 2, "started": "2026-01-02T03:04:05.000Z",
             "finished": "2026-01-02T03:04:06.000Z", "outcome": "failed",
             "inputs": [{"path": "a<b>.xml", "hash": "00ff"}], "environment": {"coppice": "1.2.3"}})");
