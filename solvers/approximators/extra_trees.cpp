@@ -1,5 +1,4 @@
-#include <cmath>
-#include <stdexcept>
+#include <algorithm>
 
 #include "engine/vocabulary/elementary.h"
 #include "solvers/approximators/forest_function.h"
@@ -52,8 +51,10 @@ struct TreeParameters {
   }
 };
 
-MadeFunction grow_forest(const TrainingSet& set, const Growth& growth, std::size_t trees, const Draws& draws,
-                         Parallel& parallel) {
+MadeFunction grow_forest(const TrainingSet& set, const TreeParameters& parameters, std::size_t trees,
+                         const Draws& draws, Parallel& parallel) {
+  const auto absent = std::count(set.weights.begin(), set.weights.end(), 0.0);
+  const Growth growth = parameters.growth(set.x.rows() - static_cast<std::size_t>(absent), set.x.columns());
   const std::size_t outputs = set.y.columns();
   std::vector<Tree> grown(trees * outputs);  // one forest for each output dimension
   parallel.for_each(grown.size(), [&](std::size_t i) {
@@ -70,8 +71,7 @@ class ExtraTrees : public Approximator, public TreeParameters {
   int trees = 25;
 
   MadeFunction fit(const TrainingSet& set, const Draws& draws, Parallel& parallel) const override {
-    return grow_forest(set, growth(set.x.rows(), set.x.columns()), static_cast<std::size_t>(trees), draws,
-                       parallel);
+    return grow_forest(set, *this, static_cast<std::size_t>(trees), draws, parallel);
   }
   static Parameters<ExtraTrees> parameters() {
     return declare<ExtraTrees>().add("trees", &ExtraTrees::trees, "",
@@ -83,16 +83,16 @@ class ExtraTrees : public Approximator, public TreeParameters {
 class RegressionTree : public Approximator, public TreeParameters {
  public:
   MadeFunction fit(const TrainingSet& set, const Draws& draws, Parallel& parallel) const override {
-    return grow_forest(set, growth(set.x.rows(), set.x.columns()), 1, draws, parallel);
+    return grow_forest(set, *this, 1, draws, parallel);
   }
   static Parameters<RegressionTree> parameters() { return declare<RegressionTree>(); }
 };
 
 const Component<Approximator, ExtraTrees> kForest(
     "extra_trees", "Forest of extremely randomized trees, with constant or linear leaves.",
-    "Geurts, Ernst and Wehenkel, Machine Learning 63 (2006); L. Hofer's thesis (2017), 2.1.5");
+    "Geurts, Ernst and Wehenkel, Machine Learning 63 (2006); L. Hofer's thesis (2017), 2.1.5", 2);
 const Component<Approximator, RegressionTree> kTree("regression_tree", "A single extremely randomized tree.",
-                                                    "L. Hofer's thesis (2017), Algorithm 6");
+                                                    "L. Hofer's thesis (2017), Algorithm 6", 2);
 
 }  // namespace
 }  // namespace coppice

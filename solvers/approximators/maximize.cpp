@@ -75,7 +75,9 @@ class ExactMaximum {
       most += std::max(a, b);
       least += std::min(a, b);
     }
-    return {most, model[tree.inputs + 1], model[tree.inputs + 2], std::max(least, model[tree.inputs + 1])};
+    const double low = model[tree.inputs + 1];
+    const double high = model[tree.inputs + 2];
+    return {most, low, high, std::clamp(least, low, high)};
   }
 
   // Searches the region; its nodes are at_[level * trees ... ].
@@ -161,9 +163,7 @@ class ExactMaximum {
     Vec<kMaxActionSize> at;
     at.resize(inputs);
     for (std::size_t i = 0; i < inputs; ++i) {
-      const double from = std::max(region_.low(i), box_->low[i]);
-      const double to = region_.high(i);
-      at[i] = slopes_[i] > 0 ? to : slopes_[i] < 0 ? from : from + 0.5 * (to - from);
+      at[i] = best_place(region_, *box_, i, slopes_[i]);
       value += slopes_[i] * at[i];
     }
     if (trees_[0].leaf == LeafModel::linear) value = std::clamp(value, low, high);

@@ -178,14 +178,8 @@ class BestLeaf {
     for (std::size_t i = 0; i < tree_.inputs; ++i) best_.at[i] = place(model, i);
   }
 
-  // Where the leaf is largest along an axis: at a side of its region, or anywhere, then at the centre.
   double place(const double* model, std::size_t axis) const {
-    const double low = std::max(region_.low(axis), box_.low[axis]);
-    const double high = region_.high(axis);
-    const double slope = model == nullptr ? 0.0 : model[1 + axis];
-    if (slope > 0) return high;
-    if (slope < 0) return low;
-    return low + 0.5 * (high - low);
+    return best_place(region_, box_, axis, model == nullptr ? 0.0 : model[1 + axis]);
   }
 
   const TreeView tree_;

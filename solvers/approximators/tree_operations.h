@@ -41,7 +41,8 @@ void prune(Tree& tree, const Box& box, std::size_t max_leaves);
 void merge(std::span<const Tree> trees, const Box& box, std::size_t max_leaves, Tree& out);
 
 /// The leaf with the largest value in the box: of a constant the centre of its part of the box, of a linear
-/// model the corner where it is largest (Algorithm 14, line 9). Of equal leaves the first from the low side.
+/// model the corner where it is largest (Algorithm 14, line 9), just inside where a split excludes it. Of
+/// equal leaves the first from the low side.
 Maximum best_leaf(const TreeView& tree, const Box& box);
 
 std::size_t count_leaves(const TreeView& tree);  ///< Algorithm 3; 1 for a single leaf

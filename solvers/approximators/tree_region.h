@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -25,6 +26,10 @@ class Region {
 
   double low(std::size_t axis) const { return low_[axis]; }
   double high(std::size_t axis) const { return high_[axis]; }
+  /// The least number on the axis that is in the region (the box's low side, or just above a split).
+  double least(std::size_t axis, const Box& box) const {
+    return std::max(box.low[axis], std::nextafter(low_[axis], std::numeric_limits<double>::infinity()));
+  }
   std::size_t size() const { return low_.size(); }
   /// Whether any point of the region is on that side of the split.
   bool reaches_low(std::size_t axis, double threshold) const { return low_[axis] < threshold; }
@@ -51,5 +56,15 @@ class Region {
   std::vector<double> low_;
   std::vector<double> high_;
 };
+
+/// Where in the region a linear model is largest along an axis: at one end, which belongs to the region, or
+/// anywhere, then at the centre.
+inline double best_place(const Region& region, const Box& box, std::size_t axis, double slope) {
+  if (slope > 0) return region.high(axis);
+  const double least = region.least(axis, box);
+  if (slope < 0) return least;
+  const double low = std::max(region.low(axis), box.low[axis]);
+  return std::max(least, low + 0.5 * (region.high(axis) - low));
+}
 
 }  // namespace coppice

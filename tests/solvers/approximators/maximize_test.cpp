@@ -1,0 +1,120 @@
+// The maximum of forests over boxes of one to three action axes, against all cells.
+
+#include "solvers/approximators/maximize.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "tests/solvers/approximators/random_trees.h"
+
+namespace coppice::testing {
+namespace {
+
+constexpr Maximization kExact{Maximization::Method::exact, 1};
+
+struct Case {
+  std::vector<Tree> trees;
+  std::vector<double> prefix;
+  Space axes;
+  Box box;
+};
+
+Case random_case(std::uint64_t trial) {
+  Stream stream = Draws(2017, "maximize", 0).stream("trial", trial);
+  Case made;
+  const std::size_t states = stream.below(3);
+  const std::size_t actions = 1 + trial % 3;
+  const LeafModel leaf = trial / 3 % 2 == 0 ? LeafModel::constant : LeafModel::linear;
+  made.trees.resize(1 + stream.below(5));
+  for (Tree& tree : made.trees) tree = random_tree(stream, {states + actions, leaf, actions == 1 ? 6 : 5});
+  made.prefix = random_point(stream, random_box(stream, states));
+  made.box = random_box(stream, actions);
+  for (std::size_t i = 0; i < actions; ++i) made.axes.push_back({"a", "", made.box.low[i], made.box.high[i]});
+  return made;
+}
+
+Forest forest_of(const std::vector<Tree>& trees) {
+  Forest forest(trees[0].inputs, 1, trees[0].leaf);
+  for (const Tree& tree : trees) forest.add(tree);
+  return forest;
+}
+
+/// The mean of the trees' leaves at `in` (which chooses the leaves), taken at x.
+double mean_at(const std::vector<Tree>& trees, const std::vector<double>& in, const std::vector<double>& x) {
+  Prediction sum;
+  for (const Tree& tree : trees) {
+    const Prediction p = value_of_leaf(tree, leaf_at(tree, in), x);
+    sum = {sum.model + p.model, sum.low + p.low, sum.high + p.high};
+  }
+  return sum.value() / static_cast<double>(trees.size());
+}
+
+double largest(const Case& test) {
+  std::vector<Tree> shifted = test.trees;  // cells of the action axes only
+  for (Tree& tree : shifted) {
+    for (TreeNode& node : tree.nodes) node.feature -= static_cast<std::int32_t>(test.prefix.size());
+  }
+  std::vector<const Tree*> pointers;
+  for (const Tree& tree : shifted) pointers.push_back(&tree);
+  double best = -1e300;
+  for (const Cell& cell : cells_of(pointers, test.box)) {
+    std::vector<double> in = test.prefix;
+    in.insert(in.end(), cell.high.begin(), cell.high.end());
+    for (std::size_t corner = 0; corner < (1u << test.axes.size()); ++corner) {
+      std::vector<double> x = in;
+      for (std::size_t i = 0; i < test.axes.size(); ++i) {
+        if ((corner >> i & 1) != 0) x[test.prefix.size() + i] = cell.low[i];
+      }
+      best = std::max(best, mean_at(test.trees, in, x));
+    }
+  }
+  return best;
+}
+
+double predicted(const Forest& forest, const Case& test, const Maximum& maximum) {
+  std::vector<double> x = test.prefix;
+  x.insert(x.end(), maximum.at.begin(), maximum.at.end());
+  double value = 0;
+  forest.predict(x, {&value, 1});
+  return value;
+}
+
+TEST(Maximize, ExactIsTheLargestOverAllCellsAndIsTakenWhereItSays) {
+  for (std::uint64_t trial = 0; trial < 12000; ++trial) {
+    const Case test = random_case(trial);
+    const Forest forest = forest_of(test.trees);
+    const Maximum best = maximize(forest, test.prefix, test.axes, kExact);
+    ASSERT_NEAR(best.value, largest(test), 1e-12) << "trial " << trial;
+    ASSERT_EQ(best.at.size(), test.axes.size());
+    for (std::size_t i = 0; i < test.axes.size(); ++i) {
+      ASSERT_TRUE(best.at[i] >= test.axes[i].low && best.at[i] <= test.axes[i].high) << "trial " << trial;
+    }
+    ASSERT_NEAR(predicted(forest, test, best), best.value, 1e-12) << "trial " << trial;
+  }
+}
+
+TEST(Maximize, MergeIsNeverBetterThanExactAndEqualToItWithoutPruning) {
+  int worse = 0;
+  for (std::uint64_t trial = 0; trial < 6000; ++trial) {
+    const Case test = random_case(trial);
+    const Forest forest = forest_of(test.trees);
+    const Maximum exact = maximize(forest, test.prefix, test.axes, kExact);
+    const Maximum whole = maximize(forest, test.prefix, test.axes, {Maximization::Method::merge, 1000000});
+    ASSERT_NEAR(whole.value, exact.value, 1e-12) << "trial " << trial;
+    ASSERT_NEAR(predicted(forest, test, whole), exact.value, 1e-12) << "trial " << trial;
+    const Maximum pruned = maximize(forest, test.prefix, test.axes, {Maximization::Method::merge, 3});
+    ASSERT_LE(predicted(forest, test, pruned), exact.value + 1e-12) << "trial " << trial;
+    worse += predicted(forest, test, pruned) < exact.value - 1e-6 ? 1 : 0;
+  }
+  EXPECT_GT(worse, 500) << "three leaves lose something";
+}
+
+TEST(Maximize, RefusesABoxThatDoesNotFit) {
+  const Forest forest = forest_of({random_case(0).trees});
+  const std::vector<double> prefix(forest.inputs());
+  EXPECT_THROW(maximize(forest, prefix, {{"a", "", 0, 1}}, kExact), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace coppice::testing
