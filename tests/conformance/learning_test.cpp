@@ -10,6 +10,7 @@
 #include "engine/vocabulary/solver.h"
 #include "tests/support/example.h"
 #include "tests/support/make.h"
+#include "tests/support/random_samples.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/threads.h"
 
@@ -24,26 +25,6 @@ std::string arrays_of(const Made& made) {
   made->save(archive);
   return archive.bytes();
 }
-
-/// Transitions of random actions on the double integrator.
-struct Samples {
-  Sub<Problem> problem = make_from_xml<Problem>("<double_integrator/>");
-  Dataset dataset;
-
-  Samples() {
-    const Sub<Policy> policy = make_from_xml<Policy>("<random/>");
-    policy.object->prepare(problem->spaces(), nullptr);
-    DatasetRecorder recorder(problem->spaces(), 15);
-    Simulation simulation;
-    simulation.policy = policy.object.get();
-    simulation.rollouts = 15;
-    simulation.horizon = 20;
-    simulation.recorder = &recorder;
-    Serial serial;
-    problem->episodes(simulation, kDraws, serial);
-    dataset = recorder.dataset();
-  }
-};
 
 /// Actions of a policy in many states; NaN stays comparable as text.
 std::vector<double> actions_of(const Policy& policy, const Spaces& spaces) {
@@ -100,12 +81,9 @@ TrainingResult train(const Solver& solver, const TrainingInputs& inputs, Paralle
 class Solvers : public testing::TestWithParam<std::string> {};
 
 TEST_P(Solvers, TrainToTheSameBytesOnThreadsAndAfterARestart) {
-  const Samples samples;
+  const RandomSamples samples(kDraws);
   const Sub<Solver> solver = make_example<Solver>(GetParam());
-  TrainingInputs inputs;
-  inputs.problem = samples.problem.object.get();
-  inputs.samples = &samples.dataset;
-  inputs.draws = kDraws;
+  TrainingInputs inputs = samples.inputs();
   Serial serial;
   Threads threads(3);
   const TrainingResult first = train(*solver, inputs, serial);
@@ -134,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(All, Solvers, testing::ValuesIn(Catalogue::instance().n
 // Configured policies as they stand; learned ones (whose arrays are missing) as some solver makes them,
 // above.
 TEST(Policies, SurviveAFile) {
-  const Samples samples;
+  const RandomSamples samples(kDraws);
   const Spaces& spaces = samples.problem->spaces();
   std::set<std::string> learned, trained;
   for (const std::string& name : Catalogue::instance().names("policy")) {
@@ -151,10 +129,7 @@ TEST(Policies, SurviveAFile) {
     policy.object->prepare(spaces, samples.problem->simulator());
     expect_survives_a_file(policy, spaces);
   }
-  TrainingInputs inputs;
-  inputs.problem = samples.problem.object.get();
-  inputs.samples = &samples.dataset;
-  inputs.draws = kDraws;
+  TrainingInputs inputs = samples.inputs();
   Serial serial;
   for (const std::string& name : Catalogue::instance().names("solver")) {
     trained.insert(train(*make_example<Solver>(name), inputs, serial).policy.resolved.name);

@@ -10,6 +10,7 @@
 
 #include "registry/component.h"
 #include "registry/units.h"
+#include "tests/support/make.h"
 
 namespace coppice {
 
@@ -60,11 +61,13 @@ inline Element example_element(const ComponentInfo& info) {
   return element;
 }
 
-/// The component of this name, made with what is required and defaults for the rest. Throws ConfigError.
+/// The component of this name, made of its own example or, without one, with what is required and defaults
+/// for the rest. Throws ConfigError.
 template <class Interface>
 Sub<Interface> make_example(const std::string& name) {
   const ComponentInfo* info = Catalogue::instance().find(Interface::kInterface, name);
   if (info == nullptr) throw std::logic_error("there is no component '" + name + "'");
+  if (!info->example.empty()) return make_from_xml<Interface>(info->example);
   Diagnostics diagnostics;
   Sub<Interface> made = make<Interface>(example_element(*info), diagnostics);
   diagnostics.throw_if_any();
