@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <fstream>
 #include <map>
 #include <set>
@@ -323,7 +324,8 @@ TEST_F(Run, SharesCoresAndKeepsAJournal) {
   EXPECT_EQ(finished, kChainNodes);
 }
 
-TEST_F(Run, AnUpToDateRunOfTenThousandNodesTakesLessThanASecond) {
+// As for plans: tests/benchmarks tells how long it takes; here only quadratic growth is caught.
+TEST_F(Run, AnUpToDateRunOfTenThousandNodesTakesNoQuadraticTime) {
   const std::string nodes =
       "<fake_source id='x' replicates='3333'/><fake_step id='y' replicates='3333' from='x'/>"
       "<fake_score id='e' of='y'/><fake_report id='t' of='e'/>";
@@ -332,11 +334,11 @@ TEST_F(Run, AnUpToDateRunOfTenThousandNodesTakesLessThanASecond) {
   plans.push_back(plan(nodes));
   RunOptions options;
   options.out = out_;
-  const auto start = std::chrono::steady_clock::now();
-  EXPECT_EQ(run(plans, options).totals.to_run, 0u);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  EXPECT_LT(seconds, 1.0);
-  RecordProperty("seconds", std::to_string(seconds));
+  const std::clock_t start = std::clock();
+  const RunTotals totals = run(plans, options).totals;
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 10.0);
+  EXPECT_EQ(totals.to_run, 0u);
+  EXPECT_EQ(totals.up_to_date, 10000u);
 }
 
 }  // namespace
