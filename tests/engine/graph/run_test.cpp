@@ -324,10 +324,11 @@ TEST_F(Run, SharesCoresAndKeepsAJournal) {
   EXPECT_EQ(finished, kChainNodes);
 }
 
-// As for plans: tests/benchmarks tells how long it takes; here only quadratic growth is caught.
-TEST_F(Run, AnUpToDateRunOfTenThousandNodesTakesNoQuadraticTime) {
+// As for plans: tests/benchmarks tells how long it takes (of 10 000 nodes, whose first run is too long for
+// here); only quadratic growth is caught.
+TEST_F(Run, AnUpToDateRunOfManyNodesTakesNoQuadraticTime) {
   const std::string nodes =
-      "<fake_source id='x' replicates='3333'/><fake_step id='y' replicates='3333' from='x'/>"
+      "<fake_source id='x' replicates='1000'/><fake_step id='y' replicates='1000' from='x'/>"
       "<fake_score id='e' of='y'/><fake_report id='t' of='e'/>";
   go(nodes);
   std::vector<Plan> plans;
@@ -336,9 +337,9 @@ TEST_F(Run, AnUpToDateRunOfTenThousandNodesTakesNoQuadraticTime) {
   options.out = out_;
   const std::clock_t start = std::clock();
   const RunTotals totals = run(plans, options).totals;
-  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 10.0);
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 1.5);
   EXPECT_EQ(totals.to_run, 0u);
-  EXPECT_EQ(totals.up_to_date, 10000u);
+  EXPECT_EQ(totals.up_to_date, 3001u);
 }
 
 }  // namespace
