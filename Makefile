@@ -13,31 +13,26 @@ run:
 
 ## The runner alone, in build/.
 build:
-	@cmake --preset release --log-level=WARNING
-	@cmake --build build -j $(JOBS) --target runner
+	@scripts/build.sh release $(JOBS) runner
 
 ## Installs what is missing, builds, runs all tests that need only the core packages.
 test:
 	@scripts/install_packages.sh test
-	@cmake --preset release --log-level=WARNING
-	@cmake --build build -j $(JOBS)
+	@scripts/build.sh release $(JOBS)
 	@$(CTEST) --test-dir build -LE slow
 
-## Everything else: formatting, sanitizers, warnings of the second compiler, long tests.
+## Everything else: formatting, the second compiler, sanitizers, long tests.
 test-all:
 	@scripts/install_packages.sh test-all
 	@scripts/check_format.sh
-	@cmake --preset release --log-level=WARNING
-	@cmake --build build -j $(JOBS)
-	@$(CTEST) --test-dir build -L slow
+	@scripts/build.sh release $(JOBS)
 	@scripts/test_sanitizers.sh $(JOBS)
-	@scripts/test_clang.sh $(JOBS)
+	@$(CTEST) --test-dir build -L slow
 
 ## Benchmarks (Google Benchmark).
 bench:
 	@scripts/install_packages.sh bench
-	@cmake --preset release -DCOPPICE_BENCHMARKS=ON --log-level=WARNING
-	@cmake --build build -j $(JOBS) --target benchmarks
+	@scripts/build.sh bench $(JOBS) benchmarks
 	@build/benchmarks
 
 ## Rewrites what is generated from the components' declarations: docs/manual.
@@ -48,4 +43,4 @@ format:
 	@git ls-files '*.cpp' '*.h' | xargs clang-format -i
 
 clean:
-	@rm -rf build build-asan build-tsan build-clang build-dev
+	@rm -rf build build-asan build-tsan build-dev

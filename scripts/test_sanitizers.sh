@@ -1,21 +1,18 @@
 #!/bin/sh
-# Builds the unit tests with the address and undefined-behaviour sanitizers and runs all of them; then those of the
-# engine, which has all the threads, with the thread sanitizer.
+# Builds everything with clang, warnings as errors, and with the address and undefined-behaviour sanitizers, and runs the
+# tests so; then those of the engine, which has all the threads, with g++ and the thread sanitizer.
 #   scripts/test_sanitizers.sh [jobs]
 set -eu
 cd "$(dirname "$0")/.."
 jobs="${1:-$(nproc)}"
 
-check() {  # preset, tests...
-  preset=$1
+run() {  # preset, options of ctest...
+  preset="$1"
   shift
-  cmake --preset "$preset" --log-level=WARNING
-  cmake --build "build-$preset" -j "$jobs" --target "$@"
-  for tests in "$@"; do
-    echo "$preset: $tests"
-    # Speed is not measured under sanitizers.
-    "build-$preset/$tests" --gtest_brief=1 --gtest_filter="-*NoQuadraticTime*"
-  done
+  echo "sanitizers: $preset"
+  ctest --test-dir "build-$preset" -j "$jobs" --output-on-failure -E NoQuadraticTime "$@"  # speed is not measured so
 }
-check asan test_registry test_engine test_problems test_solvers test_reports test_conformance
-check tsan test_engine
+scripts/build.sh asan "$jobs"
+run asan -LE slow
+scripts/build.sh tsan "$jobs" test_engine
+run tsan -L engine

@@ -1,0 +1,21 @@
+#!/bin/sh
+# Configures and builds a preset of CMakePresets.json: on a terminal with a status line, else silent but for what fails.
+#   scripts/build.sh PRESET JOBS [targets...]
+set -eu
+cd "$(dirname "$0")/.."
+preset="$1" jobs="$2"
+shift 2
+case "$preset" in
+  release | bench) folder=build ;;
+  *) folder="build-$preset" ;;
+esac
+
+quiet="--quiet"
+[ -t 1 ] && quiet=""
+cmake --preset "$preset" --log-level=WARNING >/dev/null
+if [ "$#" -gt 0 ]; then
+  cmake --build "$folder" -j "$jobs" --target "$@" -- $quiet
+else
+  cmake --build "$folder" -j "$jobs" -- $quiet
+fi
+echo "build: $folder is up to date"
