@@ -21,12 +21,13 @@ test:
 	@scripts/build.sh release $(JOBS)
 	@$(CTEST) --test-dir build -LE slow
 
-## Everything else: formatting, the second compiler, sanitizers, long tests.
+## Everything else: formatting, the second compiler with sanitizers, clang-tidy, long tests.
 test-all:
 	@scripts/install_packages.sh test-all
 	@scripts/check_format.sh
 	@scripts/build.sh release $(JOBS)
 	@scripts/test_sanitizers.sh $(JOBS)
+	@scripts/check_tidy.sh $(JOBS)
 	@$(CTEST) --test-dir build -L slow
 
 ## Benchmarks (Google Benchmark).

@@ -164,7 +164,7 @@ void refuse_rest(const CommandLine& line, const CommandInfo& command, const std:
 }  // namespace
 
 const std::vector<ArgumentInfo>& global_arguments() {
-  static const std::vector<ArgumentInfo> all = {
+  static const std::vector<ArgumentInfo> kArguments = {
       {.name = "--help", .letter = "-h", .doc = "Shows the help of the subcommand and ends."},
       {.name = "--version", .doc = "Shows the version and ends."},
       {.name = "--color",
@@ -172,7 +172,7 @@ const std::vector<ArgumentInfo>& global_arguments() {
        .doc = "Colours in messages; auto: on a terminal, unless NO_COLOR is set.",
        .choices = {"auto", "always", "never"},
        .default_text = "auto"}};
-  return all;
+  return kArguments;
 }
 
 std::string color_choice(const CommandLine& line) {
