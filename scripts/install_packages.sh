@@ -29,13 +29,12 @@ if [ -z "$missing" ]; then
   exit 0
 fi
 
-as_root=""
+as_root="env DEBIAN_FRONTEND=noninteractive"
 if [ "$(id -u)" -ne 0 ]; then
   command -v sudo >/dev/null || { echo "packages: missing$missing; become root or install sudo" >&2; exit 1; }
-  as_root="sudo"
+  as_root="sudo $as_root"  # sudo keeps no variables
 fi
 echo "packages: installing$missing"
-export DEBIAN_FRONTEND=noninteractive
 $as_root apt-get update -qq || echo "packages: the package lists could not be updated; trying with what is known" >&2
 $as_root apt-get install -y -qq --no-install-recommends $missing >/dev/null || {
   echo "packages: could not install$missing" >&2
