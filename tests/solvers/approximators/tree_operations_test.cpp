@@ -63,7 +63,8 @@ TEST(WeightedAverage, IsTheWeightedAverageAtEveryPoint) {
     const std::size_t inputs = 1 + stream.below(3);
     const Tree a = random_tree(stream, {inputs, kLeaves[stream.below(2)], 5});
     const Tree b = random_tree(stream, {inputs, kLeaves[stream.below(2)], 5});
-    const auto [wa, wb] = kWeights[stream.below(kWeights.size())];
+    const std::array<double, 2> weights = kWeights[stream.below(kWeights.size())];
+    const double wa = weights[0], wb = weights[1];  // clang 14 captures no structured bindings
     const Box box = random_box(stream, inputs);
     weighted_average(a, b, wa, wb, box, average);
     expect_all_leaves_are_reached(average, box, 0, box);
