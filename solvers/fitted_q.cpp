@@ -6,72 +6,88 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "solvers/for_rows.h"
+#include "solvers/transition_model.h"
+
 namespace coppice {
 namespace {
 
-constexpr std::size_t kChunk = 64;  // samples that a thread takes at once; changes no result
-
-/// work(row) for all rows, in chunks over threads.
-template <class Work>
-void for_rows(std::size_t rows, Parallel& parallel, const Work& work) {
-  parallel.for_each((rows + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-    const std::size_t end = std::min(rows, (chunk + 1) * kChunk);
-    for (std::size_t row = chunk * kChunk; row < end; ++row) work(row);
-  });
+void refuse_non_finite(std::span<const double> values, const char* what) {
+  for (const double value : values) {
+    if (std::isfinite(value)) continue;
+    throw std::invalid_argument(fmt::format("fitted Q iteration: {} of the samples is not finite", what));
+  }
 }
 
 const Dataset& usable(const TrainingInputs& inputs) {
   if (inputs.samples == nullptr || inputs.samples->rows() == 0) {
     throw std::invalid_argument("fitted Q iteration needs at least one sample");
   }
+  refuse_non_finite(inputs.samples->states.values(), "a state");
+  refuse_non_finite(inputs.samples->actions.values(), "an action");
+  refuse_non_finite(inputs.samples->reward, "a reward");
+  refuse_non_finite(inputs.samples->next.values(), "a next state");
   return *inputs.samples;
+}
+
+/// A row for each sample: its state, then its action.
+Matrix states_and_actions(const Dataset& samples) {
+  const std::size_t states = samples.states.columns();
+  Matrix x(samples.rows(), states + samples.actions.columns());
+  for (std::size_t c = 0; c < x.columns(); ++c) {
+    const auto from = c < states ? samples.states.column(c) : samples.actions.column(c - states);
+    std::copy(from.begin(), from.end(), x.column(c).begin());
+  }
+  return x;
 }
 
 }  // namespace
 
 FittedQ::FittedQ(const FittedQParameters& parameters, const TrainingInputs& inputs)
     : parameters_(parameters),
-      samples_(usable(inputs)),
+      given_(usable(inputs)),
       box_(inputs.problem->spaces().actions.front().axes),
       discount_(parameters.discount.value_or(inputs.problem->discount())),
       draws_(inputs.draws),
-      x_(samples_.rows(), samples_.states.columns() + box_.size()),
-      y_(samples_.rows(), 1) {
-  const std::size_t states = samples_.states.columns();
-  for (std::size_t c = 0; c < x_.columns(); ++c) {
-    const auto from = c < states ? samples_.states.column(c) : samples_.actions.column(c - states);
-    std::copy(from.begin(), from.end(), x_.column(c).begin());
+      y_(parameters.model_samples > 0 ? static_cast<std::size_t>(parameters.model_samples) : given_.rows(),
+         1) {}
+
+/// What is iterated on. Made when it is first needed, also after a restart, as a checkpoint does not hold it.
+void FittedQ::prepare(Parallel& parallel) {
+  if (samples_ != nullptr) return;
+  if (parameters_.model_samples > 0) {
+    modelled_ = model_transitions(given_, *parameters_.model, y_.rows(), draws_.fork("model"), parallel);
   }
-  for (const double x : x_.values()) {
-    if (!std::isfinite(x)) throw std::invalid_argument("fitted Q iteration: a state or action is not finite");
-  }
+  samples_ = parameters_.model_samples > 0 ? &modelled_ : &given_;
+  x_ = states_and_actions(*samples_);
 }
 
 /// max over a of Q_{n-1}(s', a) for each sample (Algorithm 13, line 8).
 std::vector<double> FittedQ::best_values(Parallel& parallel) const {
-  std::vector<double> values(samples_.rows());
+  std::vector<double> values(samples_->rows());
   for_rows(values.size(), parallel, [&](std::size_t row) {
-    if (samples_.terminal[row] != 0) return;  // nothing follows
+    if (samples_->terminal[row] != 0) return;  // nothing follows
     Vec<kMaxStateSize> state;
-    state.resize(samples_.next.columns());
-    samples_.next.row(row, state);
+    state.resize(samples_->next.columns());
+    samples_->next.row(row, state);
     values[row] = function_->maximize(state, box_, parameters_.how()).value;
   });
   return values;
 }
 
 void FittedQ::iterate(Parallel& parallel) {
+  prepare(parallel);
   // The first iteration's Q_0 is 0 (line 3): rewards only.
   const std::vector<double> best =
-      iteration_ == 0 ? std::vector<double>(samples_.rows()) : best_values(parallel);
+      iteration_ == 0 ? std::vector<double>(samples_->rows()) : best_values(parallel);
   double squares = 0;
-  for (std::size_t i = 0; i < samples_.rows(); ++i) {
-    double target = samples_.reward[i] + discount_ * best[i];
+  for (std::size_t i = 0; i < samples_->rows(); ++i) {
+    double target = samples_->reward[i] + discount_ * best[i];
     if (parameters_.target_min) target = std::max(target, *parameters_.target_min);
     squares += (target - y_(i, 0)) * (target - y_(i, 0));
     y_(i, 0) = target;
   }
-  change_ = std::sqrt(squares / static_cast<double>(samples_.rows()));
+  change_ = std::sqrt(squares / static_cast<double>(samples_->rows()));
   const Draws draws = draws_.fork("iteration", static_cast<std::uint64_t>(iteration_));
   function_ = parameters_.q_value->fit({x_, y_, {}}, draws, parallel);
   ++iteration_;

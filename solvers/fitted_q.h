@@ -13,6 +13,9 @@ struct FittedQParameters {
   int iterations = 10;
   std::optional<double> discount;
   std::optional<double> target_min;
+  int model_samples = 0;
+  Sub<Approximator> model{"extra_trees",
+                          {{"leaves", "pwl", {}, {}}, {"n_min", "5", {}, {}}, {"margin", "0.5", {}, {}}}};
   Sub<Approximator> q_value{"extra_trees"};
   Maximization::Method maximization = Maximization::Method::merge;
   int max_leaves = 50;
@@ -31,6 +34,15 @@ struct FittedQParameters {
                    "Targets below are raised to it, so that a rare large penalty does not spread over its "
                    "neighbours; "
                    "auto: no limit, as in the thesis.")
+        .add("model_samples", static_cast<int T::*>(&T::model_samples), "",
+             "Iterate on this many transitions of a model of the problem that is fitted to the samples, from "
+             "states and actions drawn uniformly; 0: on the samples themselves, as in the thesis. For few "
+             "samples of a problem with little noise, as the model holds the mean only.",
+             between(0, 100000000))
+        .component(
+            "model", static_cast<Sub<Approximator> T::*>(&T::model),
+            "Approximator of that model: of the change of state and the reward by state and action, and "
+            "of the end of an episode by the next state.")
         .component(
             "q_value", static_cast<Sub<Approximator> T::*>(&T::q_value),
             "Approximator of the value of states and actions; constant leaves, as linear ones may diverge.");
@@ -54,11 +66,14 @@ class FittedQ {
   void load(Archive& archive);
 
  private:
+  void prepare(Parallel& parallel);
   std::vector<double> best_values(Parallel& parallel) const;
 
   const FittedQParameters parameters_;
-  const Dataset& samples_;
-  const Space box_;  ///< of the action
+  const Dataset& given_;
+  Dataset modelled_;
+  const Dataset* samples_ = nullptr;  ///< one of the two; null before the first iteration
+  const Space box_;                   ///< of the action
   const double discount_;
   const Draws draws_;
   Matrix x_;  ///< states, then actions
