@@ -46,11 +46,15 @@ Quote quote(std::string_view line, const Place& place) {
   Quote made;
   if (first > 0) made.line = made.indent = "...";
   if (first > 0) made.indent = "   ";
-  std::size_t index = 0;
-  for (std::size_t offset = 0; offset < line.size(); ++index) {
+  std::size_t index = 0, offset = 0;
+  for (; index < first && offset < line.size(); ++index) {
+    const bool ascii = (line[offset] & 0x80) == 0;  // most are: a line may have millions
+    const std::optional<CodePoint> character = ascii ? std::nullopt : decode_utf8(line, offset);
+    offset += character ? character->bytes : 1;
+  }
+  for (; offset < line.size(); ++index) {
     const std::optional<CodePoint> character = decode_utf8(line, offset);
     const std::size_t bytes = character ? character->bytes : 1;
-    const bool shown = index >= first;
     if (index > caret + kAfter) {
       made.line += "...";
       break;
@@ -58,14 +62,12 @@ Quote quote(std::string_view line, const Place& place) {
     const bool printable =
         character && (character->value >= 0x20 || character->value == '\t') && character->value != 0x7F;
     const int width = printable ? display_width(character->value) : 1;
-    if (shown) {
-      made.line += printable ? line.substr(offset, bytes) : "?";  // no control codes to the terminal
-      if (index < caret) {
-        made.indent +=
-            line[offset] == '\t' ? std::string("\t") : std::string(static_cast<std::size_t>(width), ' ');
-      } else if (index < marked) {
-        made.underline.append(static_cast<std::size_t>(width), '~');
-      }
+    made.line += printable ? line.substr(offset, bytes) : "?";  // no control codes to the terminal
+    if (index < caret) {
+      made.indent +=
+          line[offset] == '\t' ? std::string("\t") : std::string(static_cast<std::size_t>(width), ' ');
+    } else if (index < marked) {
+      made.underline.append(static_cast<std::size_t>(width), '~');
     }
     offset += bytes;
   }
@@ -92,7 +94,24 @@ std::string all_texts(const std::vector<Diagnostic>& diagnostics) {
   return text;
 }
 
+/// Texts that quote what was given stay readable when megabytes were given.
+void shorten(std::string& text) {
+  constexpr std::size_t kLongest = 2000, kHead = 600, kTail = 200;
+  if (text.size() <= kLongest) return;
+  const auto character = [&text](std::size_t at) {  // not in the middle of one
+    while (at < text.size() && (text[at] & 0xC0) == 0x80) ++at;
+    return at;
+  };
+  const std::size_t head = character(kHead), tail = character(text.size() - kTail);
+  text =
+      fmt::format("{} ... ({} bytes left out) ... {}", text.substr(0, head), tail - head, text.substr(tail));
+}
+
 std::vector<Diagnostic> in_order(std::vector<Diagnostic> diagnostics) {
+  for (Diagnostic& diagnostic : diagnostics) {
+    shorten(diagnostic.message);
+    shorten(diagnostic.hint);
+  }
   sort_and_deduplicate(diagnostics);
   return diagnostics;
 }
@@ -149,6 +168,9 @@ ConfigError::ConfigError(const std::string& message)
 void Diagnostics::error(const Place& place, std::string message, std::string hint,
                         std::vector<std::string> notes) {
   ++reported_;
+  if (all_.size() >= kMost) return;
+  shorten(message);
+  shorten(hint);
   Diagnostic diagnostic{place, std::move(message), std::move(hint), std::move(notes)};
   if (seen_
           .insert(fmt::format("{}\n{}\n{}\n{}", path_of(place), place.line, place.column, diagnostic.message))

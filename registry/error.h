@@ -67,6 +67,8 @@ class ConfigError : public std::runtime_error {
 /// once.
 class Diagnostics {
  public:
+  static constexpr std::size_t kMost = 1000;  ///< nobody reads on: later ones are counted, not kept
+
   void error(const Place& place, std::string message, std::string hint = {},
              std::vector<std::string> notes = {});
   void add(const ConfigError& error);

@@ -102,8 +102,10 @@ bool read_integer(const Item& item, std::int64_t low, std::int64_t high, std::in
   }
   if (!check_bounds(item, static_cast<double>(read))) return false;
   if (read < low || read > high) {
-    return item.fail(fmt::format("'{}' is {}, but must be in [{}, {}]", item.info.name, read, low, high),
-                     item.rule());
+    const double least = std::max(static_cast<double>(low), item.info.bounds.low);
+    return item.fail(
+        fmt::format("'{}' is {}, but must be in [{}, {}]", item.info.name, read, number_text(least), high),
+        item.rule());
   }
   value = read;
   return true;
@@ -238,6 +240,9 @@ bool read_value(const ParameterInfo& info, const Attribute& attribute, Reader& r
   }
   if (!std::filesystem::exists(path, ignored)) {
     return item.fail(fmt::format("there is no file '{}'", item.text), missing_file_hint(path, given));
+  }
+  if (!std::filesystem::is_regular_file(path, ignored)) {  // read twice: for its hash and for its content
+    return item.fail(fmt::format("'{}' is a pipe or a device, not a file", item.text), info.doc);
   }
   value.path = path.string();
   return true;

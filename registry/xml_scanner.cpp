@@ -287,6 +287,9 @@ void Scanner::scan_start_tag() {
     }
     if (looking_at(">") || looking_at("/>")) break;
     if (before == at_) fail(place(at_, 1), unexpected(name), "attributes are separated by spaces");
+    if (names.size() == kMaxXmlAttributes) {
+      fail(place(at_, 1), fmt::format("<{}> has more than {} attributes", name, kMaxXmlAttributes));
+    }
     scan_attribute(tag, name, names);
   }
   const bool empty = looking_at("/>");
@@ -352,7 +355,8 @@ Place Scanner::scan_value(std::string_view attribute) {
 /// At '&' inside a value that goes up to `end`.
 void Scanner::check_reference(std::size_t begin, std::size_t end) {
   constexpr std::array<std::string_view, 5> kEntities = {"lt", "gt", "amp", "quot", "apos"};
-  const std::string_view rest = text_.substr(begin + 1, end - begin - 1);
+  constexpr std::size_t kLongest = 40;  // no reference is longer
+  const std::string_view rest = text_.substr(begin + 1, std::min(end - begin - 1, kLongest));
   const std::size_t semicolon = rest.find(';');
   const std::string_view name = rest.substr(0, semicolon);
   if (semicolon == std::string_view::npos || name.empty() ||

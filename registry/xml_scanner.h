@@ -26,7 +26,8 @@ struct ScannedXml {
   std::string text;  ///< the same XML with comments and instructions blanked, white space in values as spaces
 };
 
-inline constexpr std::size_t kMaxXmlDepth = 90;  ///< elements inside each other
+inline constexpr std::size_t kMaxXmlDepth = 90;         ///< elements inside each other
+inline constexpr std::size_t kMaxXmlAttributes = 1000;  ///< of an element
 
 /// Finds every tag and attribute with its line and column, which the parser does not give, and refuses what
 /// is not well-formed XML 1.0, or not allowed in a config (DOCTYPE, entities of one's own, text between

@@ -77,7 +77,8 @@ void Console::say(const ConfigError& error) {
     if (!all.ends_with('\n')) all += '\n';
   }
   const std::size_t count = error.diagnostics().size();
-  if (count > 1) all += fmt::format("{} errors\n", count);
+  const bool all_kept = count < Diagnostics::kMost;
+  if (count > 1) all += fmt::format("{} errors{}\n", count, all_kept ? "" : ", and there may be more");
   say(all);
 }
 

@@ -1,3 +1,7 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <csignal>
 #include <exception>
 #include <new>
@@ -69,10 +73,20 @@ int guarded(std::vector<std::string> arguments, Console& console) {
   }
 }
 
+/// Opens standard input, output and errors where the caller closed them: a file opened later would get their
+/// numbers, and what is said would be written into it. The wrong way round, so that using them still fails.
+void occupy_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
+    ::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // gets the lowest free number
+  }
+}
+
 }  // namespace
 }  // namespace coppice::cli
 
 int main(int argc, char** argv) {
+  coppice::cli::occupy_standard_descriptors();
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is seen where it is written to
   coppice::cli::Console console;
   console.set_color("auto");

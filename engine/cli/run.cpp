@@ -67,8 +67,8 @@ struct Run : ConfigInputs, SelectionInputs {
   int run(const CommandLine& line, Console& console) const {
     if (keep_going && fail_fast)
       throw line.error("--fail-fast", "'--keep-going' and '--fail-fast' exclude each other");
-    const std::vector<Plan> plans = plan_all(line, *this);
     watch_interrupts();
+    const std::vector<Plan> plans = plan_all(line, *this);
     const std::unique_ptr<RunListener> listener = make_progress(progress, console, interrupt_requested());
     RunOptions options;
     options.out = out;

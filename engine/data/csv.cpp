@@ -21,6 +21,7 @@ constexpr bool is_blank(char c) {
 }  // namespace
 
 CsvReader::CsvReader(std::shared_ptr<const SourceFile> source) : source_(std::move(source)) {
+  check_characters();
   if (!next_record()) fail(0, "the file has no header row");
   for (const Field& field : fields_) {
     if (field.text.empty()) fail(field.offset, "a column has no name");
@@ -29,6 +30,19 @@ CsvReader::CsvReader(std::shared_ptr<const SourceFile> source) : source_(std::mo
   }
   header_fields_ = fields_;
   for (std::size_t i = 0; i < header_.size(); ++i) header_fields_[i].text = header_[i];
+}
+
+void CsvReader::check_characters() const {
+  const std::string& text = source_->text;
+  for (std::size_t offset = 0; offset < text.size();) {
+    if ((text[offset] & 0x80) == 0) {
+      ++offset;
+    } else if (const std::optional<CodePoint> character = decode_utf8(text, offset)) {
+      offset += character->bytes;
+    } else {
+      fail(offset, "this is not UTF-8 text", "save the file as UTF-8");
+    }
+  }
 }
 
 std::optional<std::size_t> CsvReader::column(std::string_view name) const {

@@ -34,6 +34,7 @@ class CsvReader {
     std::string_view text;
     std::size_t offset;  ///< of the first character in the source
   };
+  void check_characters() const;
   bool next_record();
   void read_field();
   void read_quoted(std::size_t quote);

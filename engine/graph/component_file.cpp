@@ -68,6 +68,11 @@ void parse_component_file(std::string_view bytes, const std::filesystem::path& f
 }
 
 std::string component_file_bytes(const std::filesystem::path& file) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  if (std::filesystem::is_directory(status)) fail(file, "this is a folder, not a file");
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    fail(file, "this is a pipe or a device, not a file");  // it may never end
   try {
     return read_file(file);
   } catch (const std::runtime_error& unreadable) {

@@ -101,6 +101,8 @@ std::string failure_text() {
       text += (text.empty() ? "" : "\n") + to_text(diagnostic);
     }
     return text;
+  } catch (const std::length_error&) {  // more than any memory: no vector can be that long
+    return "needs more memory than any machine has";
   } catch (const std::bad_alloc&) {
     return fmt::format("ran out of memory; the program used {} at most", memory_text(peak_memory()));
   } catch (const std::exception& error) {

@@ -20,6 +20,8 @@ struct Planner::Variant {
 
 namespace {
 
+constexpr std::size_t kMostNodes = 1'000'000;
+
 Standing standing_of(const PlannedNode& node) {
   return {node.sweeps, node.point, node.replicate};
 }
@@ -111,6 +113,12 @@ void Planner::expand(std::size_t declared, DeclaredElement& element) {
     if (count == 0 || variant.standing.replicate) {
       add(declared, element, variant);
       continue;
+    }
+    if (plan_.nodes.size() + static_cast<std::size_t>(count) > kMostNodes) {
+      diagnostics_.error(place_of(element.written->find("replicates"), *element.written),
+                         fmt::format("the experiment has more than {} nodes", kMostNodes));
+      element.sound = false;
+      return;
     }
     Variant replicate = variant;
     for (int r = 0; r < count; ++r) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "registry/text.h"
 #include "tests/registry/helpers.h"
 
 namespace coppice {
@@ -127,6 +128,30 @@ TEST(Diagnostics, TakeOverThoseOfAnError) {
   diagnostics.add(ConfigError({{{}, "a", "", {"note"}}, {{}, "b", "", {}}}));
   ASSERT_EQ(diagnostics.all().size(), 2u);
   EXPECT_EQ(diagnostics.all()[0].notes, std::vector<std::string>{"note"});
+}
+
+TEST(Diagnostics, KeepAsManyAsAnybodyReads) {
+  Diagnostics diagnostics;
+  for (int i = 0; i < 5000; ++i) diagnostics.error({}, "mistake " + std::to_string(i));
+  EXPECT_EQ(diagnostics.size(), 5000u);
+  EXPECT_EQ(diagnostics.all().size(), Diagnostics::kMost);
+}
+
+TEST(Diagnostics, ShortenWhatQuotesTooMuch) {
+  Diagnostics diagnostics;
+  std::string long_text = "'";
+  for (int i = 0; i < 100'000; ++i) long_text += "\xc3\xa9";  // two bytes each: not to be cut apart
+  diagnostics.error({}, long_text + "' is too large", "a hint");
+  const std::string& message = diagnostics.all().front().message;
+  EXPECT_LT(message.size(), 1000u);
+  EXPECT_TRUE(message.ends_with("' is too large")) << message;
+  EXPECT_NE(message.find("bytes left out"), std::string::npos) << message;
+  for (std::size_t i = 0; i < message.size();) {
+    const auto character = decode_utf8(message, i);
+    ASSERT_TRUE(character) << i;
+    i += character->bytes;
+  }
+  EXPECT_EQ(diagnostics.all().front().hint, "a hint");
 }
 
 }  // namespace

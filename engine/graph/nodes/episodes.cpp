@@ -35,20 +35,28 @@ void CheckpointClock::save(NodeContext& context, const Archive& archive) {
 EpisodeRun::EpisodeRun(const Problem& problem, const Simulation& simulation, NodeContext& context,
                        bool resumable)
     : problem_(problem), simulation_(simulation), context_(context), resumable_(resumable) {
+  // Too many episodes fail now, not when all memory is full; what is not yet used costs nothing.
+  returns_.total.reserve(simulation_.rollouts);
+  returns_.discounted.reserve(simulation_.rollouts);
+  returns_.steps.reserve(simulation_.rollouts);
+  returns_.terminal.reserve(simulation_.rollouts);
   if (!resumable_) return;
   if (std::optional<Archive> saved = context_.checkpoint()) restore(std::move(*saved));
 }
 
 /// A checkpoint that cannot be read is no loss but of time.
 void EpisodeRun::restore(Archive archive) try {
-  Returns saved;
-  saved.total = archive.get<std::vector<double>>("total");
-  saved.discounted = archive.get<std::vector<double>>("discounted");
-  saved.steps = archive.get<std::vector<std::int32_t>>("steps");
-  saved.terminal = archive.get<std::vector<std::uint8_t>>("terminal");
-  const std::size_t n = saved.total.size();
-  const bool whole = saved.discounted.size() == n && saved.steps.size() == n && saved.terminal.size() == n;
-  if (whole && n <= simulation_.rollouts) returns_ = std::move(saved);
+  const auto& total = archive.get<std::vector<double>>("total");
+  const auto& discounted = archive.get<std::vector<double>>("discounted");
+  const auto& steps = archive.get<std::vector<std::int32_t>>("steps");
+  const auto& terminal = archive.get<std::vector<std::uint8_t>>("terminal");
+  const std::size_t n = total.size();
+  const bool whole = discounted.size() == n && steps.size() == n && terminal.size() == n;
+  if (!whole || n > simulation_.rollouts) return;
+  append(returns_.total, total);
+  append(returns_.discounted, discounted);
+  append(returns_.steps, steps);
+  append(returns_.terminal, terminal);
 } catch (const std::runtime_error&) {
 }
 

@@ -72,6 +72,10 @@ TEST(CsvReader, ColumnsOfPlacesCountCharactersNotBytes) {
   EXPECT_EQ(error_of("a,b\n\xC3\xA4\xC3\xA4\",1\n"), "2:3: a quote stands inside a cell");
 }
 
+TEST(CsvReader, RefusesWhatIsNotUtf8) {
+  EXPECT_EQ(error_of("a,b\n\xC3\xA4,\xFF\n"), "2:3: this is not UTF-8 text");
+}
+
 TEST(ParseNumber, TakesNumbersAndNothingElse) {
   EXPECT_EQ(parse_number("-2.5e-3"), -2.5e-3);
   EXPECT_EQ(parse_number("+4"), 4.0);
