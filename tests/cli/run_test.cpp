@@ -1,20 +1,16 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
-#include <set>
 
-#include "tests/cli/process.h"
+#include "tests/cli/runs.h"
 
 namespace coppice {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
-using Names = std::set<std::string>;
 
 /// A folder with small experiments.
-class Runs : public testing::Test {
+class Runs : public RunsInAFolder {
  protected:
   Runs() {
     folder_.write("small.xml", R"(<experiment coppice="1" seed="3">
@@ -43,46 +39,6 @@ class Runs : public testing::Test {
 </experiment>
 )");
   }
-
-  Ended run(const std::string& arguments) const { return runner(arguments, folder_.path()); }
-  Ended script(const std::string& command) const { return shell(command, folder_.path()); }
-
-  /// Names of the nodes that the plan would run.
-  Names planned(const std::string& arguments) const {
-    Names names;
-    const Ended ended = run("plan --json " + arguments);
-    EXPECT_EQ(ended.status, 0) << ended.err;
-    const Json plan = Json::parse(ended.out);
-    for (const Json& node : plan.at("experiments")[0].at("nodes")) {
-      if (node.at("runs").get<bool>()) names.insert(node.at("name"));
-    }
-    return names;
-  }
-  /// Runs and tells which nodes were finished.
-  Names executed(const std::string& arguments) const {
-    Names names;
-    const Ended ended = run("run --progress json " + arguments);
-    EXPECT_EQ(ended.status, 0) << ended.err;
-    for (const std::string& line : lines(ended.err)) {
-      const Json event = Json::parse(line);
-      if (event.at("event") == "finished") names.insert(event.at("node"));
-    }
-    return names;
-  }
-  /// Contents of all results below a folder, by name; times and what tells of the run left out.
-  static std::map<std::string, std::string> results(const fs::path& folder) {
-    std::map<std::string, std::string> files;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-      const std::string name = entry.path().filename().string();
-      const std::string path = fs::relative(entry.path(), folder).string();
-      if (!entry.is_regular_file() || name.starts_with("timing") || path.starts_with(".")) continue;
-      if (name == "provenance.json" || name == "events.jsonl" || name == "report.html") continue;
-      files[path] = TemporaryFolder::read(entry.path());
-    }
-    return files;
-  }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(Runs, WriteTablesAndNameThemOnStdout) {
