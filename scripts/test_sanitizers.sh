@@ -15,5 +15,6 @@ run() {  # preset, options of ctest...
 }
 scripts/build.sh asan "$jobs"
 run asan -LE slow
+run asan -L slow -R Mutations
 scripts/build.sh tsan "$jobs" test_engine
 run tsan -L engine
