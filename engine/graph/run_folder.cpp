@@ -22,6 +22,15 @@ constexpr const char* kHidden = ".coppice";
 constexpr const char* kLock = ".coppice/lock";
 constexpr const char* kUnrecorded = ".coppice/unrecorded";
 
+/// Removes the temporary files (".<name>...tmp") that a killed process left in a folder, not those below it.
+void remove_temporaries(const fs::path& folder) {
+  std::error_code ignored;  // what cannot be removed does no harm
+  for (fs::directory_iterator entry(folder, ignored), end; entry != end; entry.increment(ignored)) {
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with('.') && name.ends_with(".tmp")) fs::remove(entry->path(), ignored);
+  }
+}
+
 /// Where a file of a result goes: into the node's folder, or, when it is published, under the node's name
 /// among the others of its kind ("tables/<id>.csv").
 std::string place_of_file(const PlannedNode& node, const std::string& file) {
@@ -88,6 +97,7 @@ void RunFolder::lock() {
                                   owner.empty() ? "" : " (process " + owner + ")", path_.string()));
   }
   if (::ftruncate(lock_->descriptor(), 0) == 0) lock_->write(std::to_string(::getpid()));
+  for (const char* part : {"", kHidden, "nodes", "tables", "figures"}) remove_temporaries(path_ / part);
 }
 
 /// Notes, before it is made, what is to be removed if this process is killed and the plan changes.

@@ -289,6 +289,27 @@ TEST_F(BadInput, DamagedOutputFoldersAreMended) {
   }
 }
 
+TEST_F(BadInput, TemporaryFilesOfKilledRunsAreRemoved) {
+  write(
+      "<evaluate id=\"s\" problem=\"car\" policies=\"any\" episodes=\"3\"/>"
+      "<table id=\"t\" of=\"s\" rows=\"policy\" metric=\"cost\"/>");
+  ASSERT_EQ(run("e.xml").status, 0);
+  const auto expected = results(folder_ / "out/e");
+  for (const std::string name : {".resolved.xml.7.0.tmp", "nodes/.s.csv.7.1.tmp", "tables/.t.csv.7.2.tmp"}) {
+    folder_.write("out/e/" + name, "half");
+  }
+  folder_.write("out/e/mine.tmp", "not the program's");
+  EXPECT_TRUE(contains(run("e.xml").err, "everything is up to date"));
+  EXPECT_EQ(TemporaryFolder::read(folder_ / "out/e/mine.tmp"), "not the program's");
+  fs::remove(folder_ / "out/e/mine.tmp");
+  std::size_t left = 0;  // results() leaves out hidden names
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "out/e")) {
+    left += entry.path().extension() == ".tmp" ? 1 : 0;
+  }
+  EXPECT_EQ(left, 0U);
+  EXPECT_EQ(results(folder_ / "out/e"), expected);
+}
+
 TEST_F(BadInput, PolicyFilesOfEveryKindOfDamage) {
   write(
       "<collect id=\"c\" problem=\"car\" policy=\"any\" episodes=\"20\"/>"
@@ -342,7 +363,7 @@ TEST_F(BadInput, SignalsInterruptAndTheSameCommandGoesOn) {
       SCOPED_TRACE(config + ": " + signals);
       script("rm -rf out");
       const Ended ended = script("$RUNNER " + config +
-                                 " --progress json 2> log & pid=$!\n"
+                                 " --progress json > paths 2> log & pid=$!\n"
                                  "until grep -q '\"started\".*\"t\"' log; do sleep 0.01; done; sleep 0.1\n" +
                                  signals + "; wait $pid; echo status $?");
       EXPECT_EQ(ended.out, "status 3\n") << ended.err << TemporaryFolder::read(folder_ / "log");

@@ -26,7 +26,7 @@ class Runs : public RunsInAFolder {
     folder_.write("failing.xml", R"(<experiment coppice="1" seed="3">
   <problem id="car"><double_integrator/></problem>
   <policy id="random"><random/></policy>
-  <evaluate id="endless" problem="car" policies="random" episodes="1000000000" time_limit="0.05 s"/>
+  <evaluate id="endless" problem="car" policies="random" episodes="50000000" time_limit="0.05 s"/>
   <table id="of_endless" of="endless" rows="policy" metric="cost"/>
   <evaluate id="fine" problem="car" policies="random" episodes="10" seed_label="fine"/>
 </experiment>
@@ -148,14 +148,14 @@ TEST_F(Runs, StopWhenToldToAndGoOnLater) {
 
 TEST_F(Runs, StopAtOnceTheSecondTime) {
   const Ended ended = script(
-      "$RUNNER long.xml episodes:=900000000 --progress none > paths & pid=$!\nsleep 0.5\n"
+      "$RUNNER long.xml episodes:=50000000 --progress none > paths & pid=$!\nsleep 0.5\n"
       "kill -INT $pid; kill -INT $pid; wait $pid; echo status $?");
   EXPECT_EQ(ended.out, "status 3\n") << ended.err;
 }
 
 TEST_F(Runs, ExcludeEachOtherFromAFolder) {
   const Ended ended = script(
-      "$RUNNER long.xml episodes:=900000000 --progress json 2> log & pid=$!\n"
+      "$RUNNER long.xml episodes:=50000000 --progress json 2> log & pid=$!\n"
       "until grep -q started log; do sleep 0.02; done\n"
       "runner long.xml; echo status $?; kill -INT $pid; wait $pid");
   EXPECT_TRUE(contains(ended.out, "status 2\n")) << ended.out;
