@@ -1,6 +1,6 @@
 #!/bin/sh
 # Kills a run again and again at random instants (kill -9, now and then Ctrl-C), resumes it by the same command, and
-# compares the bytes of all results with those of a run that nobody disturbed.
+# compares the bytes of all results with those of a run on one core that nobody disturbed.
 #   kill_test.sh RUNNER KILLS CONFIG [NAME:=VALUE...]
 set -u
 runner="$1" kills="$2"
@@ -23,7 +23,7 @@ milliseconds() { date +%s%3N; }
 acknowledged() { (cd "$1/store/results" 2>/dev/null && find . -name '*.json' | sed 's|.*/||; s|\.json||' | sort); }
 
 start=$(milliseconds)
-"$runner" "$@" --out "$work/calm" -j 2 --progress none >"$work/log" 2>&1 || fail "the undisturbed run"
+"$runner" "$@" --out "$work/calm" -j 1 --progress none >"$work/log" 2>&1 || fail "the undisturbed run"
 span=$(($(milliseconds) - start))
 name=$(basename "$(dirname "$(find "$work/calm" -name resolved.xml)")")
 results "$work/calm/$name" >"$work/expected"
