@@ -48,7 +48,7 @@ struct DoubleIntegrator {
     if (integration == Integration::exact) {
       return {state[0] + kPeriod * state[1] + 0.5 * kPeriod * kPeriod * a, state[1] + kPeriod * a};
     }
-    constexpr double dt = kPeriod / kEulerSteps;
+    const double dt = kPeriod / kEulerSteps;
     for (int i = 0; i < kEulerSteps; ++i) {
       state[0] += dt * state[1];
       state[1] += dt * a;

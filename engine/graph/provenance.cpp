@@ -74,7 +74,7 @@ std::vector<std::pair<std::string, std::string>> environment() {
 void write_provenance(const std::filesystem::path& file, const Provenance& provenance) {
   const ExperimentConfig& experiment = provenance.plan->experiment;
   Json overrides = Json::object(), machine = Json::object(), inputs = Json::array();
-  for (const Override& override_ : experiment.overrides) overrides[override_.name] = override_.value;
+  for (const Override& given : experiment.overrides) overrides[given.name] = given.value;
   for (const auto& [name, value] : environment()) machine[name] = value;
   for (const InputFile& input : provenance.plan->files)
     inputs.push_back({{"path", input.path}, {"hash", input.hash}});

@@ -66,11 +66,11 @@ class ReferenceReader {
   static Place place_of_item(const Attribute& given, std::string_view item, const Element& element) {
     Place place = place_of(&given, element);
     if (item.size() == given.value.size()) return place;  // finding a line takes as long as the file is
-    const auto offset = static_cast<int>(item.data() - given.value.data());
+    const auto offset = static_cast<std::size_t>(item.data() - given.value.data());
     const std::string_view line = place.file ? place.file->line(place.line) : std::string_view();
-    const auto start = static_cast<std::size_t>(place.column - 1 + offset);
+    const auto start = static_cast<std::size_t>(place.column) - 1 + offset;
     if (place.column > 0 && start < line.size() && line.substr(start, item.size()) == item) {
-      place.column += offset;
+      place.column += static_cast<int>(offset);
       place.length = static_cast<int>(item.size());
     }
     return place;

@@ -65,7 +65,8 @@ void Forest::add(const Tree& tree) {
   if (offset + tree.nodes.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
     throw std::runtime_error("a forest can have at most 2^31 nodes");
   }
-  const double first_model = static_cast<double>(models_.size() / model_width(inputs_));
+  const std::size_t models = models_.size() / model_width(inputs_);
+  const auto first_model = static_cast<double>(models);
   roots_.push_back(static_cast<std::int32_t>(offset));
   for (TreeNode node : tree.nodes) {
     const bool is_leaf = node.feature == static_cast<std::int32_t>(inputs_);

@@ -269,9 +269,10 @@ void Grower::make_leaf(const Task& task) {
   TreeNode& node = tree_.nodes[task.node];
   node = {mean_, static_cast<std::int32_t>(inputs_), task.node};
   if (growth_.leaf == LeafModel::constant) return;
-  const std::size_t first = tree_.models.size();
-  node.value = static_cast<double>(first / model_width(inputs_));
-  tree_.models.resize(first + model_width(inputs_));
+  const std::size_t width = model_width(inputs_);
+  const std::size_t first = tree_.models.size(), number = first / width;
+  node.value = static_cast<double>(number);
+  tree_.models.resize(first + width);
   double* model = tree_.models.data() + first;
   whole_.fit(model[0], {model + 1, inputs_});
   const auto [least, most] = std::minmax_element(y() + task.begin, y() + task.end);

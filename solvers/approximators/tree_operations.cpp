@@ -29,8 +29,8 @@ double* add_leaf(Tree& tree, std::int32_t at, double constant) {
   tree.nodes[at] = {constant, static_cast<std::int32_t>(tree.inputs), at};
   if (tree.leaf == LeafModel::constant) return nullptr;
   const std::size_t width = model_width(tree.inputs);
-  const std::size_t first = tree.models.size();
-  tree.nodes[at].value = static_cast<double>(first / width);
+  const std::size_t first = tree.models.size(), number = first / width;
+  tree.nodes[at].value = static_cast<double>(number);
   tree.models.resize(first + width);
   return tree.models.data() + first;
 }
