@@ -6,7 +6,8 @@
 
 // Every command that the pages for users show is executed: lines "$ command" of ```console blocks, one page
 // in one folder, and the examples of the commands' help. What a page shows as output must come out; a line
-// with "..." stands for anything.
+// with "..." stands for anything. On docs/your-problem.md the program knows the problem of that page, and the
+// page's other files are there.
 
 namespace coppice {
 namespace {
@@ -43,13 +44,19 @@ std::vector<Step> steps_of(const fs::path& page) {
 /// A folder as users have it: the shipped configs, and a home of their own.
 struct Home {
   TemporaryFolder folder;
-  Home() {
+  std::string program = COPPICE_RUNNER;
+  explicit Home(const fs::path& page = {}) {
     fs::copy(kSource / "configs", folder / "configs", fs::copy_options::recursive);
+    if (page.filename() == "your-problem.md") {
+      program = COPPICE_CONTRIBUTING_RUNNER;
+      fs::copy(COPPICE_YOUR_PROBLEM, folder.path(), fs::copy_options::recursive);
+    }
     fs::create_directories(folder / ".zfunc");
     fs::create_directories(folder / ".config/fish/completions");
   }
   Ended run(const std::string& command) const {
-    return shell("export HOME=" + folder.path().string() + "\n" + command, folder.path());
+    return shell("RUNNER='" + program + "'\nexport HOME=" + folder.path().string() + "\n" + command,
+                 folder.path());
   }
 };
 
@@ -66,7 +73,7 @@ TEST(Docs, CommandsOnPagesDoWhatThePagesShow) {
   for (const fs::path& page : pages()) {
     const std::vector<Step> steps = steps_of(page);
     if (steps.empty()) continue;
-    const Home home;
+    const Home home(page);
     for (const Step& step : steps) {
       if (step.command.starts_with("make ") || step.command.starts_with("cmake "))
         continue;  // the build's own tests
