@@ -51,7 +51,7 @@ struct CarOnTheHill {
 
   /// p'' = (u / m - g H' - p'^2 H' H'') / (1 + H'^2), by Euler steps.
   static State moved(State state, double force) {
-    constexpr double dt = kPeriod / kEulerSteps;
+    const double dt = kPeriod / kEulerSteps;
     for (int i = 0; i < kEulerSteps; ++i) {
       const auto [first, second] = slope(state[0]);
       const double speed = state[1];

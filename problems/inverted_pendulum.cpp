@@ -52,7 +52,7 @@ struct InvertedPendulum {
   /// theta'' = (g sin - alpha m l theta'^2 sin cos - alpha cos u) / (4 l / 3 - alpha m l cos^2), by Euler
   /// steps.
   State moved(State state, double force) const {
-    constexpr double dt = kPeriod / kEulerSteps;
+    const double dt = kPeriod / kEulerSteps;
     const double alpha = 1 / (kMass + cart_mass);
     const double aml = alpha * kMass * kLength;
     for (int i = 0; i < kEulerSteps; ++i) {

@@ -40,7 +40,7 @@ struct SwingUp {
 
   State start(const Draws& draws) const {
     if (start_from == Start::down) return {-kPi, 0.0};
-    constexpr double degree = kPi / 180;
+    const double degree = kPi / 180;
     return {normalize_angle(kPi + draws.uniform("angle", -degree, degree)),
             draws.uniform("angular_speed", -degree, degree)};
   }

@@ -37,8 +37,12 @@ class Stepping {
   }
   /// Episodes of linear feedback u = -gains s, undiscounted.
   Returns episodes(const State2& gains, std::size_t count) const {
-    const Sub<Policy> law = make_from_xml<Policy>("<linear_feedback gains=\"" + std::to_string(gains[0]) +
-                                                  ", " + std::to_string(gains[1]) + "\"/>");
+    return episodes_of(
+        "<linear_feedback gains=\"" + std::to_string(gains[0]) + ", " + std::to_string(gains[1]) + "\"/>",
+        count);
+  }
+  Returns episodes_of(const std::string& policy, std::size_t count) const {
+    const Sub<Policy> law = make_from_xml<Policy>(policy);
     law.object->prepare(problem_->spaces(), nullptr);
     Simulation simulation;
     simulation.policy = law.object.get();

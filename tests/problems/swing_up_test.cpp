@@ -135,6 +135,16 @@ TEST(SwingUp, TheMotorIsTooWeakToLiftIt) {
   }
 }
 
+// By dynamic programming no policy costs less than 20.95 from rest.
+TEST(SwingUp, ALawOfEnergySwingsItUpAtNoLessThanTheOptimum) {
+  const Stepping step("<swing_up/>");
+  const Returns returns = step.episodes_of(
+      "<energy_swing_up stiffness=\"14.715\" energy_gain=\"2\" gains=\"30, 8\" catch_speed=\"3\"/>", 1);
+  EXPECT_EQ(returns.steps[0], 100);
+  EXPECT_GT(-returns.total[0], 20.9);
+  EXPECT_LT(-returns.total[0], 30);  // hanging down for ten seconds costs 100
+}
+
 TEST(SwingUp, StartsHangDown) {
   EXPECT_EQ(Stepping("<swing_up/>").start(1), (State2{-kPi, 0}));
   const Stepping near("<swing_up start=\"near_down\"/>");
