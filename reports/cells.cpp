@@ -30,17 +30,17 @@ void check_keys(const std::vector<Entry>& entries, const TableKeys& keys) {
   std::set<std::string> seen;
   for (const std::string& key : keys.all()) {
     if (std::find(known.begin(), known.end(), key) == known.end()) {
-      throw std::invalid_argument(
-          fmt::format("rows and columns: nothing here has the column '{}'; {}", key, suggestion(key, known)));
+      throw std::invalid_argument(fmt::format("{}: nothing here has the column '{}'; {}", keys.parameters,
+                                              key, suggestion(key, known)));
     }
     if (!seen.insert(key).second) {
-      throw std::invalid_argument(fmt::format("rows and columns: '{}' stands twice", key));
+      throw std::invalid_argument(fmt::format("{}: '{}' stands twice", keys.parameters, key));
     }
   }
 }
 
 /// Averaging over anything but replicates would hide what differs.
-void check_replicates(const std::vector<Entry>& entries, const TableCell& cell) {
+void check_replicates(const std::vector<Entry>& entries, const TableKeys& keys, const TableCell& cell) {
   const Entry& first = entries[cell.entries.front()];
   std::set<std::optional<int>> replicates;
   for (const std::size_t i : cell.entries) {
@@ -49,8 +49,8 @@ void check_replicates(const std::vector<Entry>& entries, const TableCell& cell) 
       const std::string other = value_of(first, name);
       if (value == other) continue;
       throw std::invalid_argument(
-          fmt::format("rows and columns do not tell {}=\"{}\" from {}=\"{}\": add '{}' to one of them", name,
-                      other, name, value, name));
+          fmt::format("{} do not tell {}=\"{}\" from {}=\"{}\": add '{}' to one of them", keys.parameters,
+                      name, other, name, value, name));
     }
     const bool again = !replicates.insert(entry.replicate).second;
     if (again || entry.replicate.has_value() != first.replicate.has_value()) {
@@ -129,7 +129,7 @@ std::vector<TableCell> arrange(const std::vector<Entry>& entries, const TableKey
   }
   std::vector<TableCell> sorted;
   for (auto& [place, cell] : cells) {
-    check_replicates(entries, cell);
+    check_replicates(entries, keys, cell);
     sorted.push_back(std::move(cell));
   }
   return sorted;

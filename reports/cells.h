@@ -21,6 +21,7 @@ std::vector<Entry> entries_of(const std::vector<InputNode>& nodes);
 /// The keys of a table: names of labels, in the order of the columns.
 struct TableKeys {
   std::vector<std::string> rows, columns;
+  std::string parameters = "rows and columns";  ///< where the user wrote them, for messages
   std::vector<std::string> all() const;
 };
 

@@ -5,6 +5,7 @@
 
 #include "engine/graph/node.h"
 #include "engine/statistics/estimates.h"
+#include "engine/statistics/mean_estimate.h"
 
 namespace coppice {
 
@@ -19,9 +20,14 @@ Better better(Metric metric);
 struct Observation {
   std::int64_t episodes = 0;
   double mean = 0;
-  std::optional<Interval> ci95;  ///< of the mean, over the episodes
+  double skewness = 0;           ///< over the episodes; 0 for a share
+  MeanEstimate error;            ///< of the mean, over the episodes
+  std::optional<Interval> ci95;  ///< likewise
 };
 /// Reads a node's evaluation.csv. Throws ConfigError when it is none.
 Observation observe(const InputNode& node, Metric metric);
+
+/// The value of each episode, by scenario; none when the evaluation did not keep them.
+std::vector<double> observe_episodes(const InputNode& node, Metric metric);
 
 }  // namespace coppice

@@ -1,37 +1,19 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include "engine/data/table_file.h"
 #include "engine/graph/artifacts.h"
-#include "reports/cells.h"
+#include "engine/statistics/profiles.h"
+#include "reports/cell_summary.h"
 #include "reports/known_values.h"
-#include "reports/metric.h"
 
 namespace coppice {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
-/// What a cell shows. The unit of replication is the training run; only without replicates it is the episode.
-struct Summary {
-  std::size_t replicates = 1;
-  std::int64_t episodes = 0;
-  Estimate estimate;
-};
-
-Summary summarize(const std::vector<InputNode>& nodes, const TableCell& cell, Metric metric) {
-  std::vector<double> means;
-  Observation last;
-  for (const std::size_t i : cell.entries) {
-    last = observe(nodes[i], metric);
-    means.push_back(last.mean);
-  }
-  Summary summary{means.size(), last.episodes, estimate(means, better(metric))};
-  if (!nodes[cell.entries.front()].replicate) summary.estimate.ci95 = last.ci95;
-  return summary;
-}
 
 /// A summary of evaluations, a row for each combination of keys.
 struct TableNode : Node {
@@ -63,9 +45,9 @@ struct TableNode : Node {
     add_value_columns(table);
     for (std::size_t i = 0; i < content.cells.size(); ++i) {
       const TableCell& cell = content.cells[i];
-      add_values(table.rows[i], summarize(context.inputs("of"), cell, metric));
-      table.rows[i].emplace_back(content.published.find(cell));
-      table.rows[i].emplace_back(reference ? *reference : content.references.find(cell));
+      const double target = reference ? *reference : content.references.find(cell);
+      add_values(table.rows[i], summarize(context.inputs("of"), cell, metric), content.published.find(cell),
+                 target);
     }
     write_table(context.folder() / kTableFile, table);
   }
@@ -114,26 +96,41 @@ struct TableNode : Node {
         {"worst", Type::number, "", "Worst replicate."},
         {"best", Type::number, "", "Best replicate."},
         {"published", Type::number, "", "Published value."},
-        {"reference", Type::number, "", "Best value known, or near the optimum."}};
+        {"reference", Type::number, "", "Best value known, or near the optimum."},
+        {"optimality_gap", Type::number, "",
+         "Mean over replicates of what they miss the reference by; those that reach it count 0."},
+        {"iqm_ci95_low", Type::number, "",
+         "Lower end of the studentized bootstrap 95 % interval of iqm over replicates, from 10 on."},
+        {"iqm_ci95_high", Type::number, "", "Upper end of that interval."},
+        {"caution", Type::text, "", "Why the interval of the mean may cover less than 95 %; else empty."}};
     table.columns.insert(table.columns.end(), columns_of_values.begin(), columns_of_values.end());
   }
 
-  static void add_values(std::vector<Cell>& row, const Summary& summary) {
+  void add_values(std::vector<Cell>& row, const CellSummary& summary, double known, double target) const {
     const Estimate& estimate = summary.estimate;
-    row.emplace_back(static_cast<std::int64_t>(summary.replicates));
+    row.emplace_back(static_cast<std::int64_t>(summary.replicates.size()));
     row.emplace_back(summary.episodes);
     row.emplace_back(estimate.mean);
-    row.emplace_back(estimate.ci95 ? estimate.ci95->low : kMissing);
-    row.emplace_back(estimate.ci95 ? estimate.ci95->high : kMissing);
+    add_interval(row, estimate.ci95);
     row.emplace_back(estimate.iqm);
     row.emplace_back(estimate.worst);
     row.emplace_back(estimate.best);
+    row.emplace_back(known);
+    row.emplace_back(target);
+    row.emplace_back(std::isnan(target) ? target
+                                        : optimality_gap(summary.replicates, target, better(metric)));
+    add_interval(row, summary.iqm_ci95);
+    row.push_back(summary.caution.empty() ? Cell() : Cell(summary.caution));
+  }
+  static void add_interval(std::vector<Cell>& row, const std::optional<Interval>& interval) {
+    row.emplace_back(interval ? interval->low : kMissing);
+    row.emplace_back(interval ? interval->high : kMissing);
   }
 };
 
 const Component<Node, TableNode> kComponent(
     "table", "Summarize evaluations: mean, interval, interquartile mean, worst and best of replicates.",
-    "Agarwal et al. 2021 (interquartile mean)");
+    "Agarwal et al. 2021 (interquartile mean, optimality gap)", 2);
 
 }  // namespace
 }  // namespace coppice

@@ -25,6 +25,7 @@ inline constexpr std::string_view kValueFile = "value.function";        ///< of 
 inline constexpr std::string_view kEvaluationFile = "evaluation.csv";
 inline constexpr std::string_view kReturnsFile = "returns.csv";
 inline constexpr std::string_view kProgressFile = "progress.csv";
+inline constexpr std::string_view kSelectionFile = "selection.csv";
 inline constexpr std::string_view kTableFile = "table.csv";  ///< of nodes that show tables
 
 /// The problem of a `problem` node, made from its element.

@@ -50,7 +50,7 @@ Summary summary_of(const Table& table, const std::vector<Cell>& row) {
   const auto value = [&](const char* name) {
     return table.has(name) ? number(row[table.column(name)]) : NAN;
   };
-  Summary summary{value("mean"), std::nullopt, 0};
+  Summary summary{value(table.has("mean") ? "mean" : "difference"), std::nullopt, 0};
   const double low = value("ci95_low"), high = value("ci95_high");
   if (!std::isnan(low) && !std::isnan(high)) summary.ci95 = Interval{low, high};
   const double replicates = value("n_replicates");

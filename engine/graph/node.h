@@ -43,6 +43,7 @@ struct InputNode {
   std::string key;
   std::vector<PointValue> labels;    ///< columns that name it in tables: sweep columns, "problem", "policy"
   std::vector<std::string> streams;  ///< streams of draws it depends on ("collect 0"), its own first
+  std::vector<std::string> makes;    ///< as Node::makes
 };
 
 /// What a node sees while it is checked and while it runs.

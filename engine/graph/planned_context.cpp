@@ -22,6 +22,7 @@ InputNode input_node(const PlannedNode& node, const std::filesystem::path& run_f
   input.key = node.key;
   input.labels = node.labels;
   input.streams = node.streams;
+  input.makes = node.node->makes();
   return input;
 }
 

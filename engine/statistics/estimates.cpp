@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "engine/statistics/mean_estimate.h"
+
 namespace coppice {
 namespace {
 
@@ -37,6 +39,19 @@ double standard_deviation(std::span<const double> values) {
   return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
+double sample_skewness(std::span<const double> values) {
+  if (values.size() < 3) return kNone;
+  const double n = static_cast<double>(values.size()), centre = mean(values);
+  const double deviation = standard_deviation(values);
+  if (!(deviation > 0)) return 0;
+  double cubes = 0;
+  for (double value : values) {
+    const double scaled = (value - centre) / deviation;
+    cubes += scaled * scaled * scaled;
+  }
+  return cubes * n / ((n - 1) * (n - 2));
+}
+
 double quantile(std::span<const double> values, double p) {
   if (!(p >= 0 && p <= 1)) throw std::logic_error("a quantile's p is in [0, 1]");
   if (values.empty()) return kNone;
@@ -62,7 +77,9 @@ Estimate estimate(std::span<const double> units, Better better) {
   result.units = units.size();
   result.mean = mean(units);
   result.sd = standard_deviation(units);
-  result.ci95 = t_interval(units);
+  result.skewness = sample_skewness(units);
+  result.ci95 = confidence_interval(
+      mean_estimate(static_cast<double>(result.units), result.mean, result.sd, result.skewness));
   result.median = median(units);
   result.iqm = interquartile_mean(units);
   const double lowest = quantile(units, 0);

@@ -13,6 +13,9 @@ namespace coppice {
 double mean(std::span<const double> values);
 /// Of the sample (n - 1); NaN for fewer than two values.
 double standard_deviation(std::span<const double> values);
+/// Third central moment by the cube of the deviation, both without bias (k-statistics); 0 when nothing
+/// varies, NaN for fewer than three values.
+double sample_skewness(std::span<const double> values);
 /// Linear interpolation between order statistics (definition 7 of Hyndman and Fan, The American Statistician
 /// 50(4), 1996); p in [0, 1].
 double quantile(std::span<const double> values, double p);
@@ -33,7 +36,8 @@ struct Estimate {
   std::size_t units = 0;
   double mean = 0;
   double sd = 0;                 ///< over units; NaN for one
-  std::optional<Interval> ci95;  ///< of the mean; nothing for one unit
+  double skewness = 0;           ///< over units; NaN for fewer than three
+  std::optional<Interval> ci95;  ///< of the mean, as confidence_interval has it; nothing for one unit
   double median = 0;
   double iqm = 0;
   double worst = 0;

@@ -20,7 +20,7 @@ struct Evaluation {
   std::optional<int> replicate;
   double mean_return = 0, sd = 0;
   std::int64_t episodes = 1;
-  double terminal_rate = 0;
+  double terminal_rate = 0, skewness = 0;
 };
 
 class TableTest : public ::testing::Test {
@@ -36,9 +36,9 @@ class TableTest : public ::testing::Test {
       std::filesystem::create_directory(node.folder);
       write_file(node.folder / kEvaluationFile,
                  "episodes,mean_return,sd,mean_discounted_return,sd_discounted_return,mean_steps,sd_steps,"
-                 "terminal_rate\n" +
+                 "terminal_rate,skewness,skewness_discounted_return,skewness_steps\n" +
                      cell_text(made.episodes) + "," + cell_text(made.mean_return) + "," + cell_text(made.sd) +
-                     ",-2,,7,," + cell_text(made.terminal_rate) + "\n");
+                     ",-2,,7,," + cell_text(made.terminal_rate) + "," + cell_text(made.skewness) + ",0,0\n");
     }
   }
   /// Makes the table and returns it.
@@ -89,6 +89,33 @@ TEST_F(TableTest, TakesEpisodesAsUnitWhereThereAreNoReplicates) {
 TEST_F(TableTest, GivesNoIntervalForOneTrainingRun) {
   give({{"fpf", 0, -3, 2, 16}});
   EXPECT_TRUE(std::isnan(value(made(), 0, "ci95_low"))) << "its episodes say nothing of other training runs";
+}
+
+TEST_F(TableTest, WarnsOfSmallAndSkewedSamples) {
+  give({{"fpf", 0, -1}, {"fpf", 1, -2}, {"lqr", {}, -1, 1, 40, 0, -2}, {"mre", {}, -1, 1, 40}});
+  const Table table = made();
+  const auto caution = [&](std::size_t row) { return cell_text(table.rows[row][table.column("caution")]); };
+  EXPECT_THAT(caution(0), HasSubstr("only 2 training runs"));
+  EXPECT_THAT(caution(1), HasSubstr("skewness 2")) << "of costs, that is minus the returns";
+  EXPECT_EQ(caution(2), "");
+}
+
+TEST_F(TableTest, GivesTheGapToTheReferenceAndTheIntervalOfTheInterquartileMean) {
+  give({{"fpf", 0, -1},
+        {"fpf", 1, -2},
+        {"fpf", 2, -6},
+        {"fpf", 3, -3},
+        {"fpf", 4, -3.5},
+        {"fpf", 5, -2},
+        {"fpf", 6, -1},
+        {"fpf", 7, -2.5},
+        {"fpf", 8, -2},
+        {"fpf", 9, -2.25}});
+  const Table table = made({{"reference", "2.5"}});
+  EXPECT_NEAR(value(table, 0, "optimality_gap"), (3.5 + 0.5 + 1) / 10, 1e-12);
+  EXPECT_LT(value(table, 0, "iqm_ci95_low"), value(table, 0, "iqm"));
+  EXPECT_GT(value(table, 0, "iqm_ci95_high"), value(table, 0, "iqm"));
+  EXPECT_TRUE(std::isnan(value(made(), 0, "optimality_gap"))) << "without a reference there is none";
 }
 
 TEST_F(TableTest, KnowsWhichEndIsGood) {

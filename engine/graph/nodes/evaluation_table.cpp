@@ -1,7 +1,7 @@
 #include "engine/graph/nodes/evaluation_table.h"
 
 #include "engine/statistics/estimates.h"
-#include "engine/statistics/intervals.h"
+#include "engine/statistics/mean_estimate.h"
 
 namespace coppice {
 namespace {
@@ -16,7 +16,7 @@ std::vector<double> numbers(const auto& values) {
 
 Table evaluation_table(const Returns& returns, int horizon, double discount) {
   const double mean_return = mean(returns.total);
-  const std::optional<Interval> ci = t_interval(returns.total);
+  const std::optional<Interval> ci = confidence_interval(mean_estimate(returns.total));
   const auto limit = [&](double Interval::*end) { return ci ? Cell((*ci).*end) : Cell(); };
   Table table;
   std::vector<Cell> row;
@@ -30,7 +30,7 @@ Table evaluation_table(const Returns& returns, int horizon, double discount) {
   add("mean_cost", Type::number, -mean_return, "Minus mean_return.");
   add("sd", Type::number, standard_deviation(returns.total), "Deviation of an episode's return (n - 1).");
   add("ci95_low", Type::number, limit(&Interval::low),
-      "Lower end of Student's 95 % interval of mean_return over the episodes.");
+      "Lower end of the 95 % interval of mean_return over the episodes.");
   add("ci95_high", Type::number, limit(&Interval::high), "Upper end of that interval.");
   add("mean_discounted_return", Type::number, mean(returns.discounted),
       "Mean of the discounted sum of rewards.");
@@ -43,6 +43,11 @@ Table evaluation_table(const Returns& returns, int horizon, double discount) {
       "Deviation of an episode's discounted return (n - 1).");
   add("sd_steps", Type::number, standard_deviation(numbers(returns.steps)),
       "Deviation of an episode's number of steps (n - 1).");
+  add("skewness", Type::number, sample_skewness(returns.total), "Skewness of an episode's return.");
+  add("skewness_discounted_return", Type::number, sample_skewness(returns.discounted),
+      "Skewness of an episode's discounted return.");
+  add("skewness_steps", Type::number, sample_skewness(numbers(returns.steps)),
+      "Skewness of an episode's number of steps.");
   table.rows.push_back(std::move(row));
   return table;
 }

@@ -3,54 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
-#include <stdexcept>
 #include <vector>
 
 #include "engine/vocabulary/random.h"
 
 namespace coppice {
 namespace {
-
-// From 30-digit arithmetic; the first three digits are those of every printed table.
-TEST(StudentTQuantile, AgreesWithTables) {
-  struct Row {
-    double p, degrees, t;
-  };
-  const Row rows[] = {
-      {0.975, 1, 12.706204736174705},    {0.975, 2, 4.3026527297494639},    {0.975, 4, 2.7764451051977944},
-      {0.975, 5, 2.5705818356363155},    {0.975, 9, 2.2621571627982055},    {0.975, 10, 2.2281388519862747},
-      {0.975, 19, 2.0930240544083098},   {0.975, 30, 2.0422724563012383},   {0.975, 100, 1.9839715185235523},
-      {0.975, 1000, 1.9623390808264085}, {0.975, 9999, 1.9602012636213577}, {0.995, 4, 4.6040948713499932},
-      {0.9, 3, 1.6377443536962101},      {0.975, 7.3, 2.3450667365477036},  {0.999, 2.5, 13.822193110865965}};
-  for (const Row& row : rows) {
-    EXPECT_NEAR(student_t_quantile(row.p, row.degrees) / row.t, 1, 1e-12) << row.p << " " << row.degrees;
-  }
-}
-
-TEST(StudentTQuantile, AgreesWithTheClosedFormsForOneAndTwoDegrees) {
-  for (double p = 0.501; p < 1; p += 0.017) {
-    EXPECT_NEAR(student_t_quantile(p, 1) / std::tan(std::numbers::pi * (p - 0.5)), 1, 1e-12) << p;
-    EXPECT_NEAR(student_t_quantile(p, 2) / ((2 * p - 1) / std::sqrt(2 * p * (1 - p))), 1, 1e-12) << p;
-  }
-}
-
-TEST(StudentTQuantile, IsSymmetricAndGrowsWithP) {
-  EXPECT_EQ(student_t_quantile(0.5, 7), 0);
-  double last = -1e300;
-  for (double p = 0.01; p < 1; p += 0.01) {
-    const double t = student_t_quantile(p, 3.5);
-    EXPECT_GT(t, last);
-    EXPECT_NEAR(student_t_quantile(1 - p, 3.5), -t, 1e-12 * std::fabs(t) + 1e-14);
-    last = t;
-  }
-}
-
-TEST(StudentTQuantile, RefusesWhatIsOutOfRange) {
-  EXPECT_THROW(student_t_quantile(0, 3), std::logic_error);
-  EXPECT_THROW(student_t_quantile(1, 3), std::logic_error);
-  EXPECT_THROW(student_t_quantile(0.9, 0.5), std::logic_error);
-}
 
 // Student's own first example (The Probable Error of a Mean, 1908): ten differences in hours of sleep,
 // mean 1.58 and (n - 1) standard deviation 1.230; 2.262 * 1.230 / sqrt(10) = 0.880.
@@ -86,6 +44,19 @@ TEST(TInterval, CoversTheMeanAsOftenAsItSays) {
       covered += interval.low <= 5 && 5 <= interval.high;
     }
     EXPECT_NEAR(covered / 20000.0, 0.95, 0.0062) << n;
+  }
+}
+
+// Newcombe, Statistics in Medicine 17 (1998), Table I, method 3: 81 of 263, 15 of 148, 0 of 20, 1 of 29.
+TEST(ShareInterval, AgreesWithNewcombesTable) {
+  const struct {
+    double count, n, low, high;
+  } rows[] = {
+      {81, 263, 0.2553, 0.3662}, {15, 148, 0.0624, 0.1605}, {0, 20, 0, 0.1611}, {1, 29, 0.0061, 0.1718}};
+  for (const auto& row : rows) {
+    const Interval interval = share_interval(row.count / row.n, row.n);
+    EXPECT_NEAR(interval.low, row.low, 5e-5) << row.n;
+    EXPECT_NEAR(interval.high, row.high, 5e-5) << row.n;
   }
 }
 

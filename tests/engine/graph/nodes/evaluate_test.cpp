@@ -6,7 +6,7 @@
 #include "engine/data/table_file.h"
 #include "engine/graph/artifacts.h"
 #include "engine/statistics/estimates.h"
-#include "engine/statistics/intervals.h"
+#include "engine/statistics/mean_estimate.h"
 #include "tests/engine/graph/nodes/fake_context.h"
 
 namespace coppice::testing {
@@ -77,7 +77,7 @@ TEST(Evaluate, SummarizesTheReturnsOfItsEpisodes) {
     totals.push_back(number(row[returns.column("return")]));
     terminal += number(row[returns.column("terminal")]) / 50;
   }
-  const Interval ci = *t_interval(totals);
+  const Interval ci = *confidence_interval(mean_estimate(totals));
   EXPECT_EQ(value(context, "mean_return"), mean(totals));
   EXPECT_EQ(value(context, "sd"), standard_deviation(totals));
   EXPECT_EQ(value(context, "ci95_low"), ci.low);

@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "engine/data/table_file.h"
+#include "engine/graph/artifacts.h"
+#include "engine/graph/nodes/episodes.h"
+#include "engine/statistics/estimates.h"
+
+namespace coppice {
+namespace {
+
+enum class Criterion { returns, discounted_return };
+constexpr std::array<const char*, 2> kCriteria = {"return", "discounted_return"};
+
+/// The best of several policies, the replicates of a training for instance, on scenarios that are the same
+/// for all of them and that none was made with. Its return there is the largest of several estimates, so it
+/// flatters: an evaluation, whose scenarios are others again, says what the policy is worth.
+struct SelectNode : Node {
+  Reference problem;
+  References policies;
+  std::int64_t episodes = 0;
+  std::optional<int> horizon;
+  std::optional<double> discount;
+  Criterion criterion = Criterion::returns;
+
+  std::vector<std::string> makes() const override { return {"policy", "selection", "timing"}; }
+  bool gathers(std::string_view parameter) const override { return parameter == "policies"; }
+  bool shows_labels() const override { return true; }
+
+  void check(const NodeContext& context) const override {
+    const auto target = load_problem(context.inputs("problem").front());
+    for (const InputNode& policy : context.inputs("policies")) {
+      load_policy(policy, *target);
+      if (std::find(policy.streams.begin(), policy.streams.end(), context.stream()) == policy.streams.end())
+        continue;
+      throw std::invalid_argument(
+          fmt::format("policy '{}' was made with the very draws ({}) that would judge it; give this node a "
+                      "seed_label of its own",
+                      policy.id, context.stream()));
+    }
+  }
+
+  void run(NodeContext& context) const override {
+    const auto target = load_problem(context.inputs("problem").front());
+    std::vector<Returns> played;
+    std::vector<double> values;
+    for (const InputNode& input : context.inputs("policies")) {
+      const MadePolicy policy = load_policy(input, *target);
+      played.push_back(play(*target, *policy, context));
+      const bool plain = criterion == Criterion::returns;
+      values.push_back(mean(plain ? played.back().total : played.back().discounted));
+    }
+    const auto best =
+        static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
+    write_policy(load_policy(context.inputs("policies")[best], *target), target->spaces(), context);
+    write_table(context.folder() / kSelectionFile, selection(context.inputs("policies"), played, best));
+  }
+
+  static Parameters<SelectNode> parameters() {
+    using This = SelectNode;
+    return node_parameters<This>()
+        .reference("problem", &This::problem, "problem", "Where to act.")
+        .references("policies", &This::policies, "policy",
+                    "Policies to choose from: all replicates of each, and all its sweep points that are not "
+                    "this node's.")
+        .require("episodes", &This::episodes, "", "Number of episodes of each policy.", at_least(1))
+        .automatic("horizon", &This::horizon, "", "Steps of an episode at most; auto: the problem's.",
+                   at_least(1))
+        .automatic("discount", &This::discount, "",
+                   "Discount of a step, for the discounted return; auto: the problem's.", between(0, 1))
+        .choice("criterion", &This::criterion, {kCriteria.begin(), kCriteria.end()},
+                "Of what the mean over episodes decides; of equal ones the first is taken.");
+  }
+
+ private:
+  Returns play(const Problem& target, const Policy& policy, NodeContext& context) const {
+    Simulation simulation;
+    simulation.policy = &policy;
+    simulation.rollouts = static_cast<std::size_t>(episodes);
+    simulation.horizon = horizon.value_or(target.horizon());
+    simulation.discount = discount.value_or(target.discount());
+    EpisodeRun run(target, simulation, context, false);
+    run.finish();
+    std::int64_t steps = 0;
+    for (const std::int32_t n : run.returns().steps) steps += n;
+    context.count("episodes", episodes);
+    context.count("steps", steps);
+    return run.returns();
+  }
+
+  static void write_policy(const MadePolicy& policy, const Spaces& spaces, NodeContext& context) {
+    PolicyFile file{.writer = {},
+                    .provenance = context.key(),
+                    .spaces = spaces,
+                    .component = policy.resolved,
+                    .arrays = {}};
+    policy->save(file.arrays);
+    write_policy_file(context.folder() / kPolicyFile, file);
+  }
+
+  static Table selection(const std::vector<InputNode>& policies, const std::vector<Returns>& played,
+                         std::size_t best) {
+    using Type = ColumnInfo::Type;
+    Table table;
+    table.columns = {{"candidate", Type::text, "", "Id and sweep point of the policy."},
+                     {"replicate", Type::integer, "", "Replicate of the policy."},
+                     {"episodes", Type::integer, "", "Episodes played."},
+                     {"mean_return", Type::number, "", "Mean sum of rewards in them."},
+                     {"mean_discounted_return", Type::number, "", "Mean discounted sum of rewards."},
+                     {"sd", Type::number, "", "Deviation of an episode's return (n - 1)."},
+                     {"selected", Type::boolean, "", "1: the one that was taken."}};
+    for (std::size_t i = 0; i < policies.size(); ++i) {
+      std::string name = policies[i].id;
+      for (const auto& [column, value] : policies[i].point) name += fmt::format(" {}={}", column, value);
+      const std::optional<int> replicate = policies[i].replicate;
+      table.rows.push_back({name, replicate ? Cell(std::int64_t{*replicate}) : Cell(),
+                            static_cast<std::int64_t>(played[i].total.size()), mean(played[i].total),
+                            mean(played[i].discounted), standard_deviation(played[i].total),
+                            std::int64_t{i == best}});
+    }
+    return table;
+  }
+};
+
+const Component<Node, SelectNode> kComponent(
+    "select", "Take the best of several policies, judged on scenarios of its own.", "no publication");
+
+}  // namespace
+}  // namespace coppice

@@ -1,0 +1,36 @@
+#include "engine/statistics/cautions.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "engine/statistics/mean_estimate.h"
+
+namespace coppice {
+namespace {
+
+constexpr double kUnitsForSkewedValues = 50;
+constexpr double kClearSkewness = 1;
+/// A value that occurs k times in n, all others being equal, has the skewness sqrt(n / k): 0.5 asks for four.
+constexpr double kSkewnessPerRoot = 0.5;
+
+}  // namespace
+
+std::string caution(double units, double skewness, std::string_view unit) {
+  if (units < 2) return fmt::format("one of the {}: no interval", unit);
+  if (units < kUnitsForSkewness) {
+    return fmt::format("only {} {}: the interval holds for normal values", units, unit);
+  }
+  const double amount = std::fabs(skewness);
+  if (units < kUnitsForSkewedValues && amount > kClearSkewness) {
+    return fmt::format("skewed (skewness {:.2g}): {} {} are fewer than the {} that the interval needs",
+                       skewness, units, unit, kUnitsForSkewedValues);
+  }
+  if (amount > kSkewnessPerRoot * std::sqrt(units)) {
+    return fmt::format("a few of the {} {} decide the mean (skewness {:.2g}): the interval may miss it",
+                       units, unit, skewness);
+  }
+  return {};
+}
+
+}  // namespace coppice

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/statistics/comparisons.h"
+#include "engine/statistics/mean_estimate.h"
+#include "reports/cells.h"
+#include "reports/metric.h"
+
+namespace coppice {
+
+/// One of two things that are compared.
+struct Side {
+  std::vector<int> replicates;   ///< none: not learned, its unit is the episode
+  std::vector<double> means;     ///< of each evaluation
+  std::vector<double> episodes;  ///< without replicates: the value of each episode, where they were kept
+  std::string stream;            ///< of the evaluation's scenarios
+  Observation last;              ///< of its last evaluation
+};
+Side read_side(const std::vector<InputNode>& nodes, const TableCell& cell, Metric metric);
+
+/// First minus second.
+struct Comparison {
+  std::size_t replicates = 1;
+  std::int64_t episodes = 0;
+  double mean_first = 0, mean_second = 0;
+  MeanEstimate difference;
+  double p_value = 0;
+  Improvement improvement;
+  std::string method;
+  std::string caution;
+};
+
+/// Pairs replicates where both have the same, and scenarios where neither has any; else the samples count as
+/// independent.
+Comparison compare(const Side& first, const Side& second, Metric metric);
+
+}  // namespace coppice
