@@ -1,0 +1,133 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/data/table_file.h"
+#include "engine/graph/artifacts.h"
+#include "tests/engine/graph/nodes/fake_context.h"
+
+namespace coppice::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using Attributes = std::vector<std::pair<std::string, std::string>>;
+
+class FigureTest : public ::testing::Test {
+ protected:
+  InputNode& give(const std::string& artifact, std::optional<int> replicate, const std::string& variant) {
+    InputNode& node = context.given["of"].emplace_back();
+    node.id = "n";
+    node.makes = {artifact, "timing"};
+    node.replicate = replicate;
+    node.labels = {{"variant", variant}};
+    node.folder = context.folder() / std::to_string(context.given["of"].size());
+    std::filesystem::create_directory(node.folder);
+    return node;
+  }
+  void learning(int replicate, const std::string& progress, double cpu_s) {
+    const InputNode& node = give("progress", replicate, "HA");
+    write_file(node.folder / kProgressFile, "iteration,cost\n" + progress);
+    write_file(node.folder / "timing.csv", "wall_s,cpu_s\n9," + cell_text(cpu_s) + "\n");
+  }
+  void evaluation(int replicate, const std::string& variant, double mean_return) {
+    const InputNode& node = give("evaluation", replicate, variant);
+    write_file(node.folder / kEvaluationFile,
+               "episodes,mean_return,sd,skewness\n5," + cell_text(mean_return) + ",1,0\n");
+  }
+  Table made(Attributes attributes) {
+    attributes.insert(attributes.begin(), {{"id", "f"}, {"of", "n"}});
+    const Sub<Node> node = make_node(element("figure", attributes));
+    node->check(context);
+    node->run(context);
+    drawing = nlohmann::json::parse(text_of(context.folder() / "table.vl.json"));
+    return read_table(context.folder() / kTableFile);
+  }
+  static double value(const Table& table, std::size_t row, const char* column) {
+    return number(table.rows.at(row).at(table.column(column)));
+  }
+
+  FakeContext context;
+  nlohmann::json drawing;
+};
+
+TEST_F(FigureTest, HoldsTheLastValueOfARunThatEndedEarly) {
+  learning(0, "1,10\n2,8\n3,6\n", 3);
+  learning(1, "1,20\n2,12\n", 4);
+  const Table table = made({{"by", "variant"}});
+  ASSERT_EQ(table.rows.size(), 3u);
+  EXPECT_EQ(value(table, 0, "mean"), 15);
+  EXPECT_EQ(value(table, 2, "iteration"), 3);
+  EXPECT_EQ(value(table, 2, "mean"), 9) << "of 6 and 12";
+  EXPECT_EQ(value(table, 2, "n"), 2);
+  EXPECT_LT(value(table, 2, "ci95_low"), 9);
+  EXPECT_FALSE(drawing.contains("usermeta"));
+  EXPECT_EQ(drawing.at("data").at("values").size(), 3u);
+  EXPECT_EQ(drawing.at("data").at("values").at(2).at("mean"), 9);
+  EXPECT_EQ(drawing.at("encoding").at("color").at("field"), "variant");
+  EXPECT_EQ(drawing.at("encoding").at("x").at("field"), "iteration");
+}
+
+TEST_F(FigureTest, JoinsTimesAndSaysSo) {
+  learning(0, "1,10\n2,8\n3,6\n", 3);
+  learning(1, "1,20\n2,12\n", 4);
+  const Table table = made({{"x", "cpu_s"}});
+  ASSERT_EQ(table.rows.size(), 200u);
+  EXPECT_EQ(table.columns[0].name, "cpu_s");
+  EXPECT_EQ(table.columns[0].unit, "s");
+  EXPECT_EQ(value(table, 0, "cpu_s"), 2) << "from there both have a value";
+  EXPECT_EQ(value(table, 0, "mean"), (8 + 20) / 2.0);
+  EXPECT_EQ(value(table, 199, "cpu_s"), 4);
+  EXPECT_EQ(value(table, 199, "mean"), (6 + 12) / 2.0);
+  EXPECT_EQ(drawing.at("usermeta").at("reproducible"), false);
+}
+
+TEST_F(FigureTest, DrawsEvaluationsOverASweep) {
+  for (int r = 0; r < 3; ++r) {
+    evaluation(r, "50", -10 - r);
+    evaluation(r, "100", -5);
+  }
+  const Table table = made({{"x", "variant"}});
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(value(table, 0, "variant"), 50);
+  EXPECT_EQ(value(table, 0, "mean"), 11);
+  EXPECT_EQ(value(table, 1, "mean"), 5);
+  EXPECT_EQ(value(table, 1, "n"), 3);
+}
+
+TEST_F(FigureTest, CountsEveryRunOnceInAHistogram) {
+  for (int r = 0; r < 10; ++r) evaluation(r, "HA", -r);
+  const Table table = made({{"kind", "histogram"}, {"bins", "3"}, {"by", "variant"}});
+  ASSERT_EQ(table.rows.size(), 3u);
+  EXPECT_EQ(value(table, 0, "bin_low"), 0);
+  EXPECT_EQ(value(table, 2, "bin_high"), 9);
+  EXPECT_EQ(value(table, 0, "count"), 3);
+  EXPECT_EQ(value(table, 1, "count"), 3);
+  EXPECT_EQ(value(table, 2, "count"), 4) << "the last bin holds its end";
+  EXPECT_EQ(drawing.at("mark"), "bar");
+}
+
+TEST_F(FigureTest, ShowsIntervalsAndProfiles) {
+  for (int r = 0; r < 10; ++r) evaluation(r, "HA", -r);
+  const Table intervals = made({{"kind", "interval"}, {"by", "variant"}});
+  EXPECT_EQ(value(intervals, 0, "mean"), 4.5);
+  EXPECT_EQ(drawing.at("layer").size(), 2u);
+  const Table profile = made({{"kind", "profile"}, {"by", "variant"}});
+  EXPECT_EQ(value(profile, 0, "share"), 0) << "no cost is below the least";
+  EXPECT_EQ(value(profile, profile.rows.size() - 1, "share"), 0.9);
+}
+
+TEST_F(FigureTest, SaysWhatIsWrong) {
+  evaluation(0, "HA", -1);
+  EXPECT_THAT(error_of([&] { made({{"x", "varant"}}); }), HasSubstr("did you mean 'variant'"));
+  EXPECT_THAT(error_of([&] { made({{"x", "cpu_s"}}); }), HasSubstr("give x, a column of a sweep"));
+  EXPECT_THAT(error_of([&] { made({{"x", "variant"}, {"y", "costs"}}); }), HasSubstr("did you mean 'cost'"));
+  learning(0, "1,2\n", 1);
+  EXPECT_THAT(error_of([&] { made({{"x", "variant"}}); }), HasSubstr("do not go into one figure"));
+  context.given["of"].erase(context.given["of"].begin());
+  EXPECT_THAT(error_of([&] { made({{"y", "csot"}}); }), HasSubstr("did you mean 'cost'"));
+  EXPECT_THAT(error_of([&] { made({{"kind", "profile"}}); }), HasSubstr("evaluate what was learned"));
+}
+
+}  // namespace
+}  // namespace coppice::testing
