@@ -27,7 +27,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kParentVariable = "COPPICE_PARENT";
-constexpr double kGrace = 5.0;  // s between interrupting and killing
+/// Seconds between interrupting and killing. What is over its limit gets a tenth of it more to save how far
+/// it is.
+double grace(bool late, double time_limit) {
+  constexpr double kMost = 5.0, kLeast = 0.5;
+  return late ? std::clamp(0.1 * time_limit, kLeast, kMost) : kMost;
+}
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -136,6 +141,7 @@ ChildEnd run_child(const std::filesystem::path& program, const std::vector<std::
   int status = 0;
   rusage usage{};
   Clock::time_point asked{};
+  double patience = 0;
   while (::wait4(child, &status, WNOHANG, &usage) == 0) {
     pipe.take(end.errors);
     if (end.how == ChildEnd::How::exited) {
@@ -143,8 +149,9 @@ ChildEnd run_child(const std::filesystem::path& program, const std::vector<std::
       if (!late && !stop) continue;
       end.how = late ? ChildEnd::How::out_of_time : ChildEnd::How::interrupted;
       asked = Clock::now();
+      patience = grace(late, time_limit);
       ::kill(child, SIGINT);
-    } else if (seconds_since(asked) > kGrace) {
+    } else if (seconds_since(asked) > patience) {
       ::kill(child, SIGKILL);
     }
   }

@@ -19,8 +19,9 @@ struct ChildEnd {
 };
 
 /// Runs a program to its end; its standard output is dropped. When `stop` is set, or after `time_limit` s (0:
-/// no limit), it is interrupted (SIGINT), and killed if it has not ended 5 s later. It is killed, too, when
-/// this process dies. Throws std::runtime_error when it cannot be started.
+/// no limit), it is interrupted (SIGINT), and killed if it has not ended 5 s later (at a limit: a tenth of
+/// it, but 0.5 to 5 s). It is killed, too, when this process dies. Throws std::runtime_error when it cannot
+/// be started.
 ChildEnd run_child(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                    double time_limit, const std::atomic<bool>& stop);
 

@@ -123,7 +123,9 @@ Parameters<T> node_parameters() {
       .add("seed_label", static_cast<std::string T::*>(&T::seed_label), "",
            "Label of the node's draws; empty: its kind. Nodes with equal labels meet equal randomness.")
       .add("doc", static_cast<std::string T::*>(&T::doc), "", "What the node is for; shown in the report.")
-      .add("time_limit", static_cast<double T::*>(&T::time_limit), "s", "Wall time allowed; 0: no limit.",
+      .add("time_limit", static_cast<double T::*>(&T::time_limit), "s",
+           "Wall time allowed; 0: no limit. A node that is not done then is stopped and fails; with more "
+           "time it goes on from its last checkpoint.",
            at_least(0))
       .add("memory_limit", static_cast<double T::*>(&T::memory_limit), "byte", "Memory allowed; 0: no limit.",
            at_least(0))

@@ -215,12 +215,20 @@ void run_node(const fs::path& run_folder, const std::string& key, const RunOptio
   if (limit > 0) limit_memory(limit);
   Task task;
   task.work = [&](TaskParallel& parallel) {
+    const auto out_of_memory = [&] {
+      return std::runtime_error(
+          fmt::format("ran out of memory: its memory_limit is {}; it had {} and needed more",
+                      memory_text(limit), memory_text(peak_memory())));
+    };
     try {
       compute_node(plan, index, run_folder, store, parallel, [](const RunningContext*) {});
     } catch (const std::bad_alloc&) {
       if (limit <= 0) throw;
-      throw std::runtime_error(fmt::format("ran out of memory: its memory_limit is {}, and it used {}",
-                                           memory_text(limit), memory_text(peak_memory())));
+      throw out_of_memory();
+    } catch (const std::runtime_error& error) {
+      if (limit <= 0 || peak_memory() < limit) throw;
+      // Whatever it was, it happened where even small calls of the system are refused their memory.
+      throw std::runtime_error(fmt::format("{} ({})", out_of_memory().what(), error.what()));
     }
   };
   pool.submit(std::move(task));

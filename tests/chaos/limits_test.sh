@@ -30,6 +30,21 @@ run && fail "a training of 100000 iterations kept its time limit"
 grep -q "learned.*time_limit of 0.7 s, after" "$work/log" || fail "no message about the time limit"
 [ -f "$work/out/limits/nodes/scores/still/evaluation.csv" ] || fail "the other nodes did not go on"
 
+# One unit of work that takes far longer than its limit, and offers no place to stop before its end.
+cat >"$work/unit.xml" <<XML
+<experiment coppice="1" name="unit">
+  <problem id="plant"><double_integrator/></problem>
+  <collect id="samples" problem="plant" samples="200000"/>
+  <train id="learned" problem="plant" samples="samples" time_limit="0.2 s"><fqi iterations="1"/></train>
+</experiment>
+XML
+"$runner" "$work/unit.xml" --out "$work/unit" >"$work/log" 2>&1 && fail "a node far over its time limit counts as done"
+grep -q "learned.*time_limit of 0.2 s, after" "$work/log" || fail "no message about the time limit of one unit"
+
+config 21 "10 kB" "1 h" 30 >"$work/limits.xml"
+run && fail "a program fits into 10 kB"
+grep -q "samples.*memory_limit is 10 kB; it had" "$work/log" || fail "no message about a tiny memory limit"
+
 config 20 "1 GB" "1 h" 100000 >"$work/limits.xml"
 "$runner" "$work/limits.xml" --out "$work/out" --progress none >"$work/log" 2>&1 &
 sleep 2
@@ -45,5 +60,5 @@ grep -q "up to date" "$work/log" || fail "a limit is no parameter of the result"
 
 config 300000 "60 MB" "1 h" 30 >"$work/limits.xml"
 run && fail "15 million transitions fit into 60 MB"
-grep -q "samples.*memory_limit is 60 MB, and it used" "$work/log" || fail "no message about the memory limit"
+grep -q "samples.*memory_limit is 60 MB; it had" "$work/log" || fail "no message about the memory limit"
 echo "limits are kept and told"
