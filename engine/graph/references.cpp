@@ -12,6 +12,11 @@
 namespace coppice {
 namespace {
 
+std::string with_article(const std::string& noun) {
+  const bool vowel = !noun.empty() && std::string_view("aeiou").find(noun.front()) != std::string_view::npos;
+  return (vowel ? "an " : "a ") + noun;
+}
+
 /// Finds the nodes that reference parameters name.
 class ReferenceReader {
  public:
@@ -53,8 +58,8 @@ class ReferenceReader {
         if (parameter.artifact.empty() || makes(target.node, parameter.artifact)) continue;
         const DeclaredNode& read = declarations_.nodes[target.node];
         diagnostics_.error(target.place,
-                           fmt::format("'{}' needs a node that makes a {}, and '{}' (<{}>) makes none",
-                                       parameter.name, parameter.artifact, read.id, read.kind),
+                           fmt::format("'{}' needs a node that makes {}, and '{}' (<{}>) makes none",
+                                       parameter.name, with_article(parameter.artifact), read.id, read.kind),
                            suggestion("", makers(parameter.artifact)));
         declared.sound = false;
       }

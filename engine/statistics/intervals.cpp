@@ -22,7 +22,8 @@ Interval share_interval(double share, double n, double confidence) {
   const double scale = 1 + z * z / n;
   const double center = (share + z * z / (2 * n)) / scale;
   const double half = z * std::sqrt(share * (1 - share) / n + z * z / (4 * n * n)) / scale;
-  return {std::fmax(0, center - half), std::fmin(1, center + half)};
+  // At the ends they are 0 and 1; rounding must not move them.
+  return {share <= 0 ? 0 : std::fmax(0, center - half), share >= 1 ? 1 : std::fmin(1, center + half)};
 }
 
 }  // namespace coppice

@@ -60,5 +60,12 @@ TEST(ShareInterval, AgreesWithNewcombesTable) {
   }
 }
 
+TEST(ShareInterval, EndsExactlyAtNoneAndAll) {
+  for (int n = 1; n <= 300; ++n) {
+    EXPECT_EQ(share_interval(0, n).low, 0) << n;
+    EXPECT_EQ(share_interval(1, n).high, 1) << n;
+  }
+}
+
 }  // namespace
 }  // namespace coppice
