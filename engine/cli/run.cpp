@@ -9,7 +9,9 @@
 #include "engine/cli/layout.h"
 #include "engine/cli/progress.h"
 #include "engine/cli/selection.h"
+#include "engine/graph/artifacts.h"
 #include "engine/graph/report.h"
+#include "engine/graph/run_folder.h"
 
 namespace coppice::cli {
 namespace {
@@ -19,12 +21,11 @@ namespace fs = std::filesystem;
 /// The tables and figures that the nodes of a plan show, and the page with all of them, as far as they are
 /// there.
 std::string published_files(const Plan& plan, const fs::path& out) {
-  std::string text, previous;
+  std::string text;
   for (const PlannedNode& node : plan.nodes) {
     if (node.definition || node.node->published_in().empty()) continue;
-    const fs::path file = out / plan.experiment.name / node.node->published_in() / (node.id + ".csv");
-    if (file.string() != previous && fs::exists(file)) text += file.string() + '\n';
-    previous = file.string();
+    const fs::path file = out / plan.experiment.name / place_of_file(node, kTableFile);
+    if (fs::exists(file)) text += file.string() + '\n';
   }
   const fs::path page = out / plan.experiment.name / "report.html";
   if (fs::exists(page)) text += page.string() + '\n';

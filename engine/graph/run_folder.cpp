@@ -31,17 +31,15 @@ void remove_temporaries(const fs::path& folder) {
   }
 }
 
-/// Where a file of a result goes: into the node's folder, or, when it is published, under the node's name
-/// among the others of its kind ("tables/<id>.csv").
-std::string place_of_file(const PlannedNode& node, const std::string& file) {
+}  // namespace
+
+std::string place_of_file(const PlannedNode& node, std::string_view file) {
   const std::string shelf = node.node->published_in();
-  if (shelf.empty()) return node.folder + "/" + file;
+  if (shelf.empty()) return fmt::format("{}/{}", node.folder, file);
   std::string name = node.folder.substr(std::string_view("nodes/").size());
   std::replace(name.begin(), name.end(), '/', '.');
-  return shelf + "/" + name + file.substr(std::min(file.find('.'), file.size()));
+  return fmt::format("{}/{}{}", shelf, name, file.substr(std::min(file.find('.'), file.size())));
 }
-
-}  // namespace
 
 RunFolder::RunFolder(fs::path folder) : path_(std::move(folder)) {
   if (std::optional<Placements> known = read_placements(path_ / kPlacementsFile)) {

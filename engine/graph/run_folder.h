@@ -13,6 +13,10 @@
 
 namespace coppice {
 
+/// Where a file of a result goes in the run folder: into the node's folder, or, when it is published, under
+/// the node's name among the others of its kind ("tables/<id>.csv", "tables/<id>.<column>=<value>.csv").
+std::string place_of_file(const PlannedNode& node, std::string_view file);
+
 /// The folder of one experiment's run: results linked from the store under the names of the config, and a
 /// hidden folder
 /// `.coppice` with the lock and the record of what lies where. May be read by any number of processes; one at
