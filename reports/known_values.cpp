@@ -12,7 +12,7 @@
 namespace coppice {
 
 KnownValues::KnownValues(const std::string& file, const TableKeys& keys, const std::vector<TableCell>& cells)
-    : table_(read_table(file)) {
+    : table_(read_table(file, {"value"})) {
   const std::vector<std::string> names = keys.all();
   std::vector<std::string> valid = names;
   valid.insert(valid.end(), {"value", "source", "note"});
@@ -24,6 +24,13 @@ KnownValues::KnownValues(const std::string& file, const TableKeys& keys, const s
   if (!table_.has("value")) throw ConfigError(fmt::format("{}: there is no column 'value'", file));
   for (const std::string& name : names) {
     columns_.push_back(table_.has(name) ? std::optional(table_.column(name)) : std::nullopt);
+  }
+  const bool keyed = std::any_of(columns_.begin(), columns_.end(), [](const auto& key) { return bool(key); });
+  if (!keyed && table_.rows.size() > 1) {
+    throw ConfigError(fmt::format("{}: its {} rows have no key, so each would be about every cell; add {}",
+                                  file, table_.rows.size(),
+                                  names.empty() ? "keys to the table and columns for them to the file"
+                                                : "a column " + join(names, " or ")));
   }
   bool any = table_.rows.empty();
   for (const TableCell& cell : cells) {

@@ -14,8 +14,8 @@ namespace coppice {
 class KnownValues {
  public:
   KnownValues() = default;  ///< knows nothing
-  /// Throws ConfigError naming the file: for other columns (with the nearest), and when no row is about any
-  /// of the cells, or two are about the same.
+  /// Throws ConfigError naming the file: for other columns (with the nearest), for a value that is no number,
+  /// for several rows without a key, and when no row is about any of the cells, or two are about the same.
   KnownValues(const std::string& file, const TableKeys& keys, const std::vector<TableCell>& cells);
 
   /// The value for a cell; NaN when there is none.

@@ -187,13 +187,17 @@ void write_table(const std::filesystem::path& file, const Table& table) {
   write_schema(file, table.columns);
 }
 
-Table read_table(const std::filesystem::path& file) {
+Table read_table(const std::filesystem::path& file, const std::vector<std::string>& numbers) {
   const std::shared_ptr<const SourceFile> source = read_source(file.string(), kLargestTable);
   CsvReader reader(source);
   const std::filesystem::path schema = schema_path(file);
   Table table;
   table.columns =
       std::filesystem::exists(schema) ? described_columns(schema, reader) : inferred_columns(source);
+  for (ColumnInfo& column : table.columns) {
+    const bool wanted = std::find(numbers.begin(), numbers.end(), column.name) != numbers.end();
+    if (wanted && column.type == Type::text) column.type = Type::number;
+  }
   Diagnostics errors;
   while (reader.next() && errors.size() < kMaxCsvErrors) {
     std::vector<Cell>& row = table.rows.emplace_back(table.columns.size());

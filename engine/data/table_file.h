@@ -40,8 +40,9 @@ std::string cell_text(const Cell& cell);
 void write_table(const std::filesystem::path& file, const Table& table);
 
 /// Reads any CSV (LF or CRLF). Types come from the schema beside it, else from the cells; a boolean is 0
-/// or 1. Throws ConfigError with file, line and column for what is not CSV, or not of its column's type.
-Table read_table(const std::filesystem::path& file);
+/// or 1. Throws ConfigError with file, line and column for what is not CSV, or not of its column's type; the
+/// columns named in `numbers` hold no text.
+Table read_table(const std::filesystem::path& file, const std::vector<std::string>& numbers = {});
 
 /// <name>.schema.json beside <name>.csv: {"columns": [{"name", "type", "unit", "doc"}, ...]}.
 void write_schema(const std::filesystem::path& table, const std::vector<ColumnInfo>& columns);
