@@ -2,20 +2,19 @@
 
 #include "engine/statistics/bootstrap.h"
 #include "engine/statistics/cautions.h"
+#include "reports/units.h"
 
 namespace coppice {
 
 CellSummary summarize(const std::vector<InputNode>& nodes, const TableCell& cell, Metric metric) {
   CellSummary summary;
-  Observation last;
-  for (const std::size_t i : cell.entries) {
-    last = observe(nodes[i], metric);
-    summary.replicates.push_back(last.mean);
-  }
+  const Units units = units_of(nodes, cell, metric);
+  const Observation& last = units.last;
+  for (const Run& run : units.runs) summary.replicates.push_back(run.mean);
   const std::vector<double>& means = summary.replicates;
   summary.episodes = last.episodes;
   summary.estimate = estimate(means, better(metric));
-  if (nodes[cell.entries.front()].replicate) {
+  if (units.are_runs) {
     summary.iqm_ci95 = bootstrap_interval(means, studentized_iqm, Draws(0, "table", 0));
     summary.caution = caution(static_cast<double>(means.size()), summary.estimate.skewness, "training runs");
   } else {

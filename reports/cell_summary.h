@@ -8,10 +8,10 @@
 
 namespace coppice {
 
-/// What a cell shows. The unit of replication is the training run; only without replicates it is the episode.
+/// What a cell shows; what its intervals are over, see Units.
 struct CellSummary {
-  std::vector<double> replicates;  ///< the mean of each evaluation
-  std::int64_t episodes = 0;       ///< of each of them
+  std::vector<double> replicates;  ///< the mean of each run
+  std::int64_t episodes = 0;       ///< of each evaluation
   Estimate estimate;
   std::optional<Interval> iqm_ci95;
   std::string caution;

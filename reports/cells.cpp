@@ -13,6 +13,8 @@
 namespace coppice {
 namespace {
 
+constexpr const char* kRenamed = "sweep_";
+
 std::string value_of(const Entry& entry, std::string_view name) {
   for (const auto& [label, value] : entry.names) {
     if (label == name) return value;
@@ -144,6 +146,18 @@ void add_key_columns(Table& table, const TableKeys& keys, const std::vector<Tabl
     table.columns.push_back({names[k], type, "", of_row ? "Key of the row." : "Key of the column."});
     for (std::size_t i = 0; i < cells.size(); ++i) table.rows[i].push_back(key_cell(cells[i].keys[k], type));
   }
+}
+
+void rename_taken_keys(Table& table, std::size_t keys) {
+  const auto values = table.columns.begin() + static_cast<std::ptrdiff_t>(keys);
+  for (auto key = table.columns.begin(); key != values; ++key) {
+    const auto same = [&](const ColumnInfo& value) { return value.name == key->name; };
+    if (std::any_of(values, table.columns.end(), same)) key->name = kRenamed + key->name;
+  }
+}
+
+std::string key_column(const Table& table, const std::string& key) {
+  return table.has(kRenamed + key) ? kRenamed + key : key;
 }
 
 bool same_key(std::string_view a, std::string_view b) {

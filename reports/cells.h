@@ -39,6 +39,12 @@ std::vector<TableCell> arrange(const std::vector<Entry>& entries, const TableKey
 /// The key columns of a table with these cells, as numbers where all keys are.
 void add_key_columns(Table& table, const TableKeys& keys, const std::vector<TableCell>& cells);
 
+/// Gives a key column that has the name of a column after the keys the name sweep_<name>, as evaluations have
+/// it; the first `keys` columns are those of keys.
+void rename_taken_keys(Table& table, std::size_t keys);
+/// The name that the key's column has in such a table.
+std::string key_column(const Table& table, const std::string& key);
+
 /// Equal texts, or equal numbers.
 bool same_key(std::string_view a, std::string_view b);
 

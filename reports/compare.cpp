@@ -55,6 +55,7 @@ struct CompareNode : Node {
     const std::vector<double> adjusted = holm_adjusted(p_values);
     Table table;
     table.columns = columns();
+    rename_taken_keys(table, within.size());
     for (std::size_t i = 0; i < comparisons.size(); ++i) {
       std::vector<Cell>& row = table.rows.emplace_back();
       const TableCell& first = what.cells[what.pairs[i].first];
@@ -169,7 +170,7 @@ struct CompareNode : Node {
 const Component<Node, CompareNode> kComponent(
     "compare",
     "Compare evaluated policies two by two: difference with interval, p-value, who is likely better.",
-    "Welch 1947; Holm 1979; Agarwal et al. 2021 (probability of improvement)");
+    "Welch 1947; Holm 1979; Agarwal et al. 2021 (probability of improvement)", 2);
 
 }  // namespace
 }  // namespace coppice

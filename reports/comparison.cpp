@@ -6,31 +6,28 @@
 #include <limits>
 
 #include "engine/statistics/cautions.h"
+#include "reports/units.h"
 
 namespace coppice {
 namespace {
 
-bool learned(const Side& side) {
-  return !side.replicates.empty();
-}
-
 /// Of what a side's mean is one of several; the means of runs, else the episodes as they were summarized.
 MeanEstimate estimate_of(const Side& side) {
-  return learned(side) ? mean_estimate(side.means) : side.last.error;
+  return side.are_runs ? mean_estimate(side.means) : side.last.error;
 }
 
 std::string caution_of(const Side& side) {
-  return learned(side)
+  return side.are_runs
              ? caution(static_cast<double>(side.means.size()), sample_skewness(side.means), "training runs")
              : caution(static_cast<double>(side.last.episodes), side.last.skewness, "episodes");
 }
 
 bool paired_runs(const Side& a, const Side& b) {
-  return learned(a) && a.replicates == b.replicates;
+  return a.are_runs && b.are_runs && a.replicates == b.replicates;
 }
 
 bool paired_episodes(const Side& a, const Side& b) {
-  return !learned(a) && !learned(b) && !a.episodes.empty() && a.stream == b.stream &&
+  return !a.are_runs && !b.are_runs && !a.episodes.empty() && a.stream == b.stream &&
          a.episodes.size() == b.episodes.size();
 }
 
@@ -43,9 +40,9 @@ Improvement improvement_over(const std::vector<double>& means, double value, Bet
 }
 
 Improvement improvement(const Side& first, const Side& second, Better better) {
-  if (learned(first) && learned(second)) return probability_of_improvement(first.means, second.means, better);
-  if (learned(first)) return improvement_over(first.means, second.last.mean, better);
-  if (learned(second)) {
+  if (first.are_runs && second.are_runs) return probability_of_improvement(first.means, second.means, better);
+  if (first.are_runs) return improvement_over(first.means, second.last.mean, better);
+  if (second.are_runs) {
     const Improvement other = improvement_over(second.means, first.last.mean, better);
     return {1 - other.probability, Interval{1 - other.ci95->high, 1 - other.ci95->low}};
   }
@@ -55,24 +52,19 @@ Improvement improvement(const Side& first, const Side& second, Better better) {
 }  // namespace
 
 Side read_side(const std::vector<InputNode>& nodes, const TableCell& cell, Metric metric) {
+  Units units = units_of(nodes, cell, metric);
+  std::stable_sort(units.runs.begin(), units.runs.end(),
+                   [](const Run& a, const Run& b) { return a.replicate < b.replicate; });
   Side side;
-  std::vector<std::pair<int, double>> runs;
-  for (const std::size_t i : cell.entries) {
-    const InputNode& node = nodes[i];
-    side.last = observe(node, metric);
-    if (!node.streams.empty()) side.stream = node.streams.front();
-    if (node.replicate) {
-      runs.emplace_back(*node.replicate, side.last.mean);
-    } else {
-      side.means.push_back(side.last.mean);
-      side.episodes = observe_episodes(node, metric);
-    }
+  side.are_runs = units.are_runs;
+  side.last = units.last;
+  for (const Run& run : units.runs) {
+    side.replicates.push_back(run.replicate);
+    side.means.push_back(run.mean);
   }
-  std::sort(runs.begin(), runs.end());
-  for (const auto& [replicate, value] : runs) {
-    side.replicates.push_back(replicate);
-    side.means.push_back(value);
-  }
+  const InputNode& last = nodes[cell.entries.back()];
+  if (!last.streams.empty()) side.stream = last.streams.front();
+  if (!side.are_runs) side.episodes = observe_episodes(last, metric);
   return side;
 }
 

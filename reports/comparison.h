@@ -12,9 +12,10 @@ namespace coppice {
 
 /// One of two things that are compared.
 struct Side {
-  std::vector<int> replicates;   ///< none: not learned, its unit is the episode
-  std::vector<double> means;     ///< of each evaluation
-  std::vector<double> episodes;  ///< without replicates: the value of each episode, where they were kept
+  bool are_runs = false;                       ///< as Units::are_runs; else its unit is the episode
+  std::vector<std::optional<int>> replicates;  ///< of each run
+  std::vector<double> means;                   ///< of each run
+  std::vector<double> episodes;  ///< not of runs: the value of each episode, where they were kept
   std::string stream;            ///< of the evaluation's scenarios
   Observation last;              ///< of its last evaluation
 };

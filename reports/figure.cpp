@@ -9,6 +9,7 @@
 #include "registry/suggest.h"
 #include "reports/cell_summary.h"
 #include "reports/figure_data.h"
+#include "reports/units.h"
 #include "reports/vega_lite.h"
 
 namespace coppice {
@@ -71,8 +72,12 @@ struct FigureNode : Node {
     } else {
       summaries(nodes, arranged, keys, table);
     }
+    rename_taken_keys(table, names.size());
     write_table(context.folder() / kTableFile, table);
-    write_file(context.folder() / "table.vl.json", vega_lite(table, {kind, x_name(nodes), y, by}));
+    for (std::string& name : names) name = key_column(table, name);
+    const std::string abscissa = swept ? names.back() : x_name(nodes);
+    names.resize(by.size());
+    write_file(context.folder() / "table.vl.json", vega_lite(table, {kind, abscissa, y, names}));
   }
 
   static Parameters<FigureNode> parameters() {
@@ -171,10 +176,12 @@ struct FigureNode : Node {
 
   /// The means of training runs, or the values of episodes.
   std::vector<double> values(const std::vector<InputNode>& nodes, const TableCell& cell) const {
-    const InputNode& first = nodes[cell.entries.front()];
-    std::vector<double> units;
-    if (!first.replicate) units = observe_episodes(first, metric());
-    return units.empty() ? summarize(nodes, cell, metric()).replicates : units;
+    const Units units = units_of(nodes, cell, metric());
+    std::vector<double> values;
+    if (!units.are_runs) values = observe_episodes(nodes[cell.entries.front()], metric());
+    if (!values.empty()) return values;
+    for (const Run& run : units.runs) values.push_back(run.mean);
+    return values;
   }
 
   void histogram(const std::vector<InputNode>& nodes, const std::vector<TableCell>& arranged,
@@ -231,7 +238,7 @@ struct FigureNode : Node {
 
 const Component<Node, FigureNode> kComponent(
     "figure", "Make a figure: tidy data, and a Vega-Lite specification that draws it.",
-    "Agarwal et al. 2021 (performance profiles)");
+    "Agarwal et al. 2021 (performance profiles)", 2);
 
 }  // namespace
 }  // namespace coppice

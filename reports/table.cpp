@@ -43,6 +43,7 @@ struct TableNode : Node {
     Table table;
     add_key_columns(table, {rows, columns}, content.cells);
     add_value_columns(table);
+    rename_taken_keys(table, rows.size() + columns.size());
     for (std::size_t i = 0; i < content.cells.size(); ++i) {
       const TableCell& cell = content.cells[i];
       const double target = reference ? *reference : content.references.find(cell);
@@ -90,7 +91,8 @@ struct TableNode : Node {
         {"episodes", Type::integer, "", "Episodes of each evaluation."},
         {"mean", Type::number, "", fmt::format("Mean {}: over the replicates of their means.", what)},
         {"ci95_low", Type::number, "",
-         "Lower end of the 95 % interval of the mean: over replicates; over episodes where there are none."},
+         "Lower end of the 95 % interval of the mean: over training runs; over episodes "
+         "of a policy that was not learned."},
         {"ci95_high", Type::number, "", "Upper end of that interval."},
         {"iqm", Type::number, "", "Interquartile mean of the replicates."},
         {"worst", Type::number, "", "Worst replicate."},
@@ -130,7 +132,7 @@ struct TableNode : Node {
 
 const Component<Node, TableNode> kComponent(
     "table", "Summarize evaluations: mean, interval, interquartile mean, worst and best of replicates.",
-    "Agarwal et al. 2021 (interquartile mean, optimality gap)", 2);
+    "Agarwal et al. 2021 (interquartile mean, optimality gap)", 3);
 
 }  // namespace
 }  // namespace coppice

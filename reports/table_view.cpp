@@ -28,10 +28,11 @@ std::string shown(const Table& table, const std::vector<Cell>& row,
   return {};
 }
 
-std::vector<std::size_t> columns_of(const Table& table, const std::vector<std::string>& names) {
+std::vector<std::size_t> columns_of(const Table& table, const std::vector<std::string>& keys) {
   std::vector<std::size_t> columns;
-  for (const std::string& name : names) {
-    if (table.has(name)) columns.push_back(table.column(name));
+  for (const std::string& key : keys) {
+    const std::string column = key_column(table, key);
+    if (table.has(column)) columns.push_back(table.column(column));
   }
   return columns;
 }

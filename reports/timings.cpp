@@ -51,6 +51,7 @@ struct TimingsNode : Node {
     table.columns.push_back({"ci95_high_s", Type::number, "s", "Upper end of that interval."});
     table.columns.push_back({"median_s", Type::number, "s", "Median."});
     table.columns.push_back({"max_s", Type::number, "s", "Longest."});
+    rename_taken_keys(table, rows.size() + columns.size());
     for (std::size_t i = 0; i < cells.size(); ++i) {
       std::vector<double> values;
       for (const std::size_t entry : cells[i].entries) {

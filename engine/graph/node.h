@@ -44,6 +44,7 @@ struct InputNode {
   std::vector<PointValue> labels;    ///< columns that name it in tables: sweep columns, "problem", "policy"
   std::vector<std::string> streams;  ///< streams of draws it depends on ("collect 0"), its own first
   std::vector<std::string> makes;    ///< as Node::makes
+  std::string training;  ///< key of the training run whose policy it is about; empty: nothing was learned
 };
 
 /// What a node sees while it is checked and while it runs.
@@ -92,6 +93,9 @@ class Node : public NodeOptions {
   /// False when draws() plays no part: seed, label and replicate then stay out of its key, and it has no
   /// stream.
   virtual bool random() const { return true; }
+  /// True when a policy that it makes was learned, or may have been (train, a policy file). What is known of
+  /// it is then known of one training run.
+  virtual bool learns() const { return false; }
   /// True when a reference parameter takes several nodes although the node has no sweep or replicate of its
   /// own (table, figure, compare, select; train's samples).
   virtual bool gathers(std::string_view) const { return false; }

@@ -42,8 +42,9 @@ struct PlannedNode {
   std::vector<PlannedInput> inputs;         ///< in the order of the parameters
   std::vector<PointValue> labels;    ///< columns that name it in tables: sweep columns, problem, policy
   std::vector<std::string> streams;  ///< streams of draws it depends on, its own first (unless a definition)
-  std::string parameters_text;       ///< part of the key text that comes from `resolved`; see key.h
-  std::string family;                ///< hash of that part: equal for all replicates
+  std::optional<std::size_t> training;  ///< node that learned the policy it is about; none: not learned
+  std::string parameters_text;          ///< part of the key text that comes from `resolved`; see key.h
+  std::string family;                   ///< hash of that part: equal for all replicates
 };
 
 /// What a config asks for, before looking at any result. Everything that plan, why and run say comes from

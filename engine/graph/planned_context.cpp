@@ -9,7 +9,7 @@ namespace {
   throw std::logic_error("a node asked for what it has only while it runs");
 }
 
-InputNode input_node(const PlannedNode& node, const std::filesystem::path& run_folder) {
+InputNode input_node(const Plan& plan, const PlannedNode& node, const std::filesystem::path& run_folder) {
   InputNode input;
   input.id = node.id;
   input.kind = node.kind;
@@ -23,6 +23,7 @@ InputNode input_node(const PlannedNode& node, const std::filesystem::path& run_f
   input.labels = node.labels;
   input.streams = node.streams;
   input.makes = node.node->makes();
+  if (node.training) input.training = plan.nodes[*node.training].key;
   return input;
 }
 
@@ -33,7 +34,7 @@ PlannedContext::PlannedContext(const Plan& plan, std::size_t node, const std::fi
   for (const PlannedInput& input : node_.inputs) {
     std::vector<InputNode>& list = inputs_[input.parameter];
     list.reserve(input.nodes.size());
-    for (const std::size_t i : input.nodes) list.push_back(input_node(plan.nodes[i], run_folder));
+    for (const std::size_t i : input.nodes) list.push_back(input_node(plan, plan.nodes[i], run_folder));
   }
 }
 

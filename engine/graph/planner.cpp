@@ -94,6 +94,20 @@ void collect_streams(PlannedNode& node, const Plan& plan) {
   }
 }
 
+/// The node itself when it learns, or takes one of several learned policies; else that of the policy it
+/// reads.
+std::optional<std::size_t> training_of(const PlannedNode& node, const Plan& plan) {
+  const std::size_t self = plan.nodes.size();
+  if (node.node->learns()) return self;
+  for (const PlannedInput& input : node.inputs) {
+    if (input.artifact != "policy") continue;
+    for (const std::size_t i : input.nodes) {
+      if (plan.nodes[i].training) return makes(node, "policy") ? self : plan.nodes[i].training;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Planner::Planner(Declarations& declarations, Plan& plan, Diagnostics& diagnostics)
@@ -212,6 +226,7 @@ void Planner::add(std::size_t declared, DeclaredElement& element, const Variant&
   name_node(node);
   label_node(node, plan_);
   collect_streams(node, plan_);
+  node.training = training_of(node, plan_);
   index_.add(declared, plan_.nodes.size(), standing_of(node));
   plan_.nodes.push_back(std::move(node));
 }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "engine/data/table_file.h"
 #include "tests/cli/runs.h"
 
 namespace coppice {
@@ -192,6 +193,52 @@ TEST_F(Runs, TakeSeveralConfigs) {
 
 TEST_F(Runs, SweepAnArgumentGivenSeveralValues) {
   EXPECT_EQ(planned("small.xml episodes:=5,6 --only samples").size(), 4U);
+}
+
+TEST_F(Runs, NameTheTablesOfEverySweepPoint) {
+  const Ended ended = run("small.xml episodes:=5,6");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.out,
+            "out/small/tables/costs.episodes=5.csv\nout/small/tables/costs.episodes=6.csv\n"
+            "out/small/report.html\n");
+  for (const std::string& file : lines(ended.out)) EXPECT_TRUE(fs::exists(folder_ / file)) << file;
+}
+
+TEST_F(Runs, TakeATrainingRunAsUnitUnlessNothingWasLearned) {
+  folder_.write("learned.xml", R"(<experiment coppice="1" seed="3">
+  <problem id="car"><double_integrator start="uniform"/></problem>
+  <policy id="random"><random/></policy>
+  <collect id="samples" problem="car" policy="random" episodes="5"/>
+  <train id="fpf" problem="car" samples="samples">
+    <fpf model_samples="100" target_min="-5" policy_samples="100">
+      <q_value><extra_trees leaves="pwl"/></q_value>
+      <policy><extra_trees leaves="pwl"/></policy>
+    </fpf>
+  </train>
+  <select id="taken" problem="car" policies="fpf, random" episodes="5"/>
+  <evaluate id="scores" problem="car" policies="fpf, taken, random" episodes="30"/>
+  <table id="costs" of="scores" rows="policy"/>
+</experiment>
+)");
+  ASSERT_EQ(run("learned.xml").status, 0);
+  folder_.write("saved.xml", R"(<experiment coppice="1" seed="3">
+  <problem id="car"><double_integrator start="uniform"/></problem>
+  <policy id="saved" file="out/learned/nodes/fpf/policy.policy"/>
+  <evaluate id="scores" problem="car" policies="saved" episodes="30" replicates="2"/>
+  <table id="costs" of="scores" rows="policy"/>
+</experiment>
+)");
+  const Ended ended = run("saved.xml");
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const auto interval = [&](const std::string& experiment, std::size_t row) {
+    const Table table = read_table(folder_ / "out" / experiment / "tables/costs.csv");
+    EXPECT_EQ(number(table.rows.at(row).at(table.column("n_replicates"))), 1);
+    return cell_text(table.rows.at(row).at(table.column("ci95_low")));
+  };
+  EXPECT_EQ(interval("learned", 0), "") << "trained";
+  EXPECT_EQ(interval("learned", 1), "") << "selected";
+  EXPECT_NE(interval("learned", 2), "") << "not learned: over episodes";
+  EXPECT_EQ(interval("saved", 0), "") << "from a file, one training run however often it is evaluated";
 }
 
 TEST_F(Runs, LeaveNothingToCollectUntilResultsAreReplaced) {

@@ -107,6 +107,27 @@ TEST_F(CompareTest, PairsTrainingRunsAndCorrectsForTheNumberOfTests) {
   EXPECT_NEAR(least_adjusted, 3 * least, 1e-12);
 }
 
+TEST_F(CompareTest, SaysNothingOfOtherTrainingRunsFromTheEpisodesOfOne) {
+  give("learned", {}, kFirst);
+  give("fixed", {}, kSecond);
+  context.given["of"][0].training = "key of learned";
+  const Table table = made();
+  EXPECT_EQ(text(table, 0, "method"), "Welch");
+  EXPECT_EQ(value(table, 0, "n_replicates"), 1);
+  EXPECT_EQ(text(table, 0, "ci95_low"), "");
+  EXPECT_EQ(text(table, 0, "p_value"), "");
+  EXPECT_THAT(text(table, 0, "caution"), HasSubstr("one of the training runs"));
+}
+
+TEST_F(CompareTest, RenamesKeysThatHaveTheNameOfAnotherColumn) {
+  give("a", {}, kFirst);
+  give("b", {}, kSecond);
+  for (InputNode& node : context.given["of"]) node.labels.emplace_back("episodes", "50");
+  const Table table = made({{"within", "episodes"}});
+  EXPECT_EQ(text(table, 0, "sweep_episodes"), "50");
+  EXPECT_EQ(value(table, 0, "episodes"), 9);
+}
+
 TEST_F(CompareTest, ComparesWithinGroupsAndWithABaseline) {
   for (const std::string variant : {"HA", "ANHA"}) {
     give("a", {}, kFirst, variant);

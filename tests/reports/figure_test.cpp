@@ -117,6 +117,28 @@ TEST_F(FigureTest, ShowsIntervalsAndProfiles) {
   EXPECT_EQ(value(profile, profile.rows.size() - 1, "share"), 0.9);
 }
 
+TEST_F(FigureTest, TakesALearnedPolicyWithoutReplicatesAsOneRun) {
+  evaluation(0, "HA", -1);
+  InputNode& node = context.given["of"][0];
+  node.replicate.reset();
+  node.training = "its key";
+  write_file(node.folder / kReturnsFile, "scenario,return\n0,-1\n1,0\n2,-2\n");
+  EXPECT_EQ(value(made({{"kind", "histogram"}, {"bins", "1"}, {"by", "variant"}}), 0, "count"), 1);
+  node.training.clear();
+  EXPECT_EQ(value(made({{"kind", "histogram"}, {"bins", "1"}, {"by", "variant"}}), 0, "count"), 3);
+}
+
+TEST_F(FigureTest, RenamesKeysThatHaveTheNameOfAnotherColumn) {
+  evaluation(0, "HA", -1);
+  context.given["of"][0].labels = {{"mean", "4"}, {"n", "7"}};
+  const Table table = made({{"x", "mean"}, {"by", "n"}});
+  EXPECT_EQ(value(table, 0, "sweep_mean"), 4);
+  EXPECT_EQ(value(table, 0, "sweep_n"), 7);
+  EXPECT_EQ(value(table, 0, "mean"), 1);
+  EXPECT_EQ(drawing.at("encoding").at("x").at("field"), "sweep_mean");
+  EXPECT_EQ(drawing.at("encoding").at("color").at("field"), "sweep_n");
+}
+
 TEST_F(FigureTest, SaysWhatIsWrong) {
   evaluation(0, "HA", -1);
   EXPECT_THAT(error_of([&] { made({{"x", "varant"}}); }), HasSubstr("did you mean 'variant'"));

@@ -21,6 +21,7 @@ struct Evaluation {
   double mean_return = 0, sd = 0;
   std::int64_t episodes = 1;
   double terminal_rate = 0, skewness = 0;
+  std::string training = {};
 };
 
 class TableTest : public ::testing::Test {
@@ -31,6 +32,7 @@ class TableTest : public ::testing::Test {
       InputNode& node = nodes.emplace_back();
       node.id = "scores";
       node.replicate = made.replicate;
+      node.training = made.training;
       node.labels = {{"problem", "car"}, {"policy", made.policy}};
       node.folder = context.folder() / std::to_string(nodes.size());
       std::filesystem::create_directory(node.folder);
@@ -89,6 +91,36 @@ TEST_F(TableTest, TakesEpisodesAsUnitWhereThereAreNoReplicates) {
 TEST_F(TableTest, GivesNoIntervalForOneTrainingRun) {
   give({{"fpf", 0, -3, 2, 16}});
   EXPECT_TRUE(std::isnan(value(made(), 0, "ci95_low"))) << "its episodes say nothing of other training runs";
+}
+
+TEST_F(TableTest, TakesTheTrainingRunAsUnitAlsoWithoutReplicates) {
+  give({{"fpf", {}, -3, 2, 16, 0, 0, "key of fpf"}, {"lqr", {}, -3, 2, 16}});
+  const Table table = made();
+  EXPECT_EQ(value(table, 0, "n_replicates"), 1);
+  EXPECT_EQ(value(table, 0, "mean"), 3);
+  EXPECT_TRUE(std::isnan(value(table, 0, "ci95_low")));
+  EXPECT_TRUE(std::isnan(value(table, 0, "ci95_high")));
+  EXPECT_THAT(cell_text(table.rows[0][table.column("caution")]), HasSubstr("one of the training runs"));
+  EXPECT_LT(value(table, 1, "ci95_low"), 3);
+}
+
+TEST_F(TableTest, CountsATrainingRunOnceHoweverOftenItIsEvaluated) {
+  give({{"fpf", 0, -1, 2, 16, 0, 0, "first"},
+        {"fpf", 1, -3, 2, 16, 0, 0, "first"},
+        {"fpf", 2, -6, 2, 16, 0, 0, "second"}});
+  const Table table = made();
+  EXPECT_EQ(value(table, 0, "n_replicates"), 2);
+  EXPECT_EQ(value(table, 0, "best"), 2) << "of 1 and 3";
+  EXPECT_EQ(value(table, 0, "mean"), 4);
+}
+
+TEST_F(TableTest, RenamesKeysThatHaveTheNameOfAnotherColumn) {
+  give({{"fpf", 0, -1}});
+  context.given["of"][0].labels = {{"episodes", "50"}, {"policy", "fpf"}};
+  const Table table = made({{"columns", "episodes"}});
+  EXPECT_EQ(value(table, 0, "sweep_episodes"), 50);
+  EXPECT_EQ(value(table, 0, "episodes"), 1);
+  EXPECT_EQ(cell_text(table.rows[0][table.column("policy")]), "fpf");
 }
 
 TEST_F(TableTest, WarnsOfSmallAndSkewedSamples) {
@@ -157,6 +189,10 @@ TEST_F(TableTest, SaysWhatIsWrongWithKnownValues) {
   EXPECT_THAT(error("policy\nfpf\n"), HasSubstr("no column 'value'"));
   EXPECT_THAT(error("policy,value\nfqi,1\n"), HasSubstr("none of its rows"));
   EXPECT_THAT(error("policy,value\nfpf,1\nfpf,2\n"), HasSubstr("two values for fpf"));
+  EXPECT_THAT(error("policy,value\nfpf,1\nother,abc\n"),
+              AllOf(HasSubstr("known.csv:3:7"), HasSubstr("'value': 'abc' is not a finite number")));
+  EXPECT_THAT(error("value,note\n1,\n2,\n"),
+              AllOf(HasSubstr("known.csv: its 2 rows have no key"), HasSubstr("add a column policy")));
   EXPECT_THAT(error_of([&] {
                 made({{"reference", "1"}, {"reference_file", file("r.csv", "value\n1\n")}});
               }),

@@ -19,6 +19,7 @@ struct PolicyNode : Node {
   std::vector<std::string> makes() const override { return {"policy"}; }
   bool definition() const override { return problem.id.empty() && file.path.empty(); }
   bool random() const override { return false; }
+  bool learns() const override { return !file.path.empty(); }  // its file does not tell
 
   void check() const {
     if (file.path.empty() == !policy) {

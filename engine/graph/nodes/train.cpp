@@ -79,6 +79,7 @@ struct TrainNode : Node {
   Sub<Solver> solver;
 
   std::vector<std::string> makes() const override { return {"policy", "function", "progress", "timing"}; }
+  bool learns() const override { return true; }
   bool gathers(std::string_view parameter) const override { return parameter == "samples"; }
   std::vector<std::string> labelled_tables() const override { return {std::string(kProgressFile)}; }
 
