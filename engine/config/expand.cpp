@@ -97,13 +97,6 @@ class Merger {
       diagnostics.error(argument.override.place,
                         fmt::format("the argument '{}' is given a value twice", name));
     }
-    for (const SweepPoints& other : experiment_.sweeps) {
-      if (other.id != name) continue;
-      diagnostics.error(
-          argument.override.place,
-          fmt::format("the argument '{}' cannot be swept: a sweep has the same name", name),
-          fmt::format("the sweep is defined at {}:{}", other.place.file->path, other.place.line));
-    }
     return sweep;
   }
 
@@ -124,6 +117,17 @@ bool can_sweep(const std::vector<GivenArgument*>& now, const std::vector<GivenAr
     if (combinations > kMostPasses) {
       diagnostics.error(override.place,
                         fmt::format("the swept arguments have more than {} combinations", kMostPasses));
+      return false;
+    }
+    const auto other = std::find_if(pass.sweeps.begin(), pass.sweeps.end(),
+                                    [&](const SweepPoints& sweep) { return sweep.id == override.name; });
+    if (other != pass.sweeps.end()) {
+      diagnostics.error(
+          override.place,
+          fmt::format("the argument '{}' cannot be swept: a sweep has the same name", override.name),
+          fmt::format("the sweep is defined at {}:{}; an argument of type list takes the "
+                      "whole list",
+                      other->place.file->path, other->place.line));
       return false;
     }
     const bool always = std::find(at_first.begin(), at_first.end(), argument) != at_first.end() &&

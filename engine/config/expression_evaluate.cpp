@@ -16,8 +16,9 @@ ExpressionError at(const ExpressionNode& node, const std::string& message, const
   return {node.offset, node.length, message, hint};
 }
 
-const Value& lookup(const ExpressionNode& node, const Names& names) {
+Value lookup(const ExpressionNode& node, const Names& names) {
   if (const Value* value = names.find(node.text)) return *value;
+  if (node.text == "dirname") return Value::text(names.folder());  // as $(dirname), which has no parentheses
   throw names.unknown(node.text, node.offset);
 }
 

@@ -262,6 +262,12 @@ TEST(Overrides, CannotSweepUnderATakenName) {
   EXPECT_EQ(bad(R"(<arg name="s" default="1"/><sweep id="s"><list><point v="1"/></list></sweep>)", {"s:=1,2"})
                 .message,
             "the argument 's' cannot be swept: a sweep has the same name");
+  const Outcome outcome = expand_body(
+      R"(<arg name="s" default="1"/><sweep id="s"><grid><param name="v" values="${s}"/></grid></sweep>)"
+      R"(<x id="x" over="s" at2="${v}"/>)",
+      {"s:=1,2"});
+  EXPECT_EQ(outcome.errors.size(), 1u) << outcome.text();
+  EXPECT_EQ(nodes_text(outcome.config), "") << "no nodes at points that are not there, to be wrong in turn";
   EXPECT_EQ(bad(R"(<arg name="s" default="1"/>)", {"s:=1,1"}).message,
             "the argument 's' is given a value twice");
   EXPECT_EQ(

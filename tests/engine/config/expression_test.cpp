@@ -281,6 +281,8 @@ TEST(Expression, HasTheFunctionsOfTheLanguage) {
   EXPECT_EQ(number("round(2.5)"), 3);
   EXPECT_EQ(number("round(-2.5)"), -3);
   EXPECT_EQ(text_of("dirname()"), "/home/user/configs");
+  EXPECT_EQ(text_of("dirname"), "/home/user/configs");
+  EXPECT_EQ(text_of("dirname", {{"dirname", "mine"}}), "mine");
   EXPECT_EQ(mistake("min([])").message, "min of an empty list");
   EXPECT_EQ(mistake("sqr(2)").marked, "sqr");
   EXPECT_EQ(mistake("sqr(2)").hint, "did you mean 'sqrt'?");
