@@ -38,13 +38,10 @@ class ReferenceReader {
         const auto target = by_id_.find(id);
         if (target == by_id_.end()) {
           unknown(parameter, id, place);
-        } else if (!seen.insert(id).second) {
-          diagnostics_.error(place, fmt::format("'{}' names '{}' twice", parameter.name, id));
-        } else {
+          declared.sound = false;
+        } else if (seen.insert(id).second) {  // reading the element reports what stands twice
           reference.targets.push_back({target->second, place});
-          continue;
         }
-        declared.sound = false;
       }
       if (!reference.targets.empty()) declared.references.push_back(std::move(reference));
     }
