@@ -18,7 +18,7 @@ class Fpf : public Solver, public FittedQParameters {
   Sub<Approximator> policy{"extra_trees",
                            {{.name = "leaves", .value = "pwl", .name_place = {}, .value_place = {}}}};
 
-  Needs needs() const override { return {.samples = true, .simulator = false, .single_action = true}; }
+  Needs needs() const override { return {.samples = true, .single_action = true, .uses_value = true}; }
   std::unique_ptr<Training> start(const TrainingInputs& inputs) const override;
 
   static Parameters<Fpf> parameters() {

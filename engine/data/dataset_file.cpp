@@ -166,6 +166,12 @@ void append(std::string& bytes, std::int64_t number) {
 
 }  // namespace
 
+std::vector<std::string> dataset_column_names(const Spaces& spaces) {
+  std::vector<std::string> names;
+  for (const Wanted& column : dataset_columns(spaces)) names.push_back(column.info.name);
+  return names;
+}
+
 void write_dataset(const std::filesystem::path& file, const Dataset& dataset) {
   dataset.check();
   std::vector<ColumnInfo> schema;

@@ -45,6 +45,7 @@ struct InputNode {
   std::vector<std::string> streams;  ///< streams of draws it depends on ("collect 0"), its own first
   std::vector<std::string> makes;    ///< as Node::makes
   std::string training;  ///< key of the training run whose policy it is about; empty: nothing was learned
+  std::vector<std::string> columns;  ///< as Node::dataset_columns
 };
 
 /// What a node sees while it is checked and while it runs.
@@ -97,8 +98,11 @@ class Node : public NodeOptions {
   /// it is then known of one training run.
   virtual bool learns() const { return false; }
   /// True when a reference parameter takes several nodes although the node has no sweep or replicate of its
-  /// own (table, figure, compare, select; train's samples).
+  /// own (table, figure, compare, select).
   virtual bool gathers(std::string_view) const { return false; }
+  /// True when it takes all replicates of a node where it has none of its own, but one sweep point only
+  /// (train's samples).
+  virtual bool gathers_replicates(std::string_view) const { return false; }
   /// True when its files show the labels and replicates of its inputs, which then enter its key (table).
   virtual bool shows_labels() const { return false; }
   /// Tables among its files to which the engine adds the node's labels and replicate as first columns. The
@@ -106,6 +110,8 @@ class Node : public NodeOptions {
   virtual std::vector<std::string> labelled_tables() const { return {}; }
   /// Folder of the run in which its tables appear under the node's id ("tables"); empty: none.
   virtual std::string published_in() const { return {}; }
+  /// Columns of the dataset that it makes, as far as they are known when planning; empty: unknown.
+  virtual std::vector<std::string> dataset_columns(const NodeContext&) const { return {}; }
   /// Checks that need the inputs' elements. Throws std::invalid_argument or ConfigError; called when
   /// planning.
   virtual void check(const NodeContext&) const {}

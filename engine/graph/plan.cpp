@@ -32,12 +32,14 @@ void check_name(const ExperimentConfig& experiment, Diagnostics& diagnostics) {
 
 /// Lets every node check itself with the elements of its inputs; replicates differ in nothing that it could
 /// check.
-void check_nodes(const Plan& plan, Diagnostics& diagnostics) {
+void check_nodes(Plan& plan, Diagnostics& diagnostics) {
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
-    const PlannedNode& node = plan.nodes[i];
+    PlannedNode& node = plan.nodes[i];
     if (node.replicate.value_or(0) != 0) continue;
     try {
-      node.node->check(PlannedContext(plan, i));
+      const PlannedContext context(plan, i);
+      node.node->check(context);
+      node.columns = node.node->dataset_columns(context);
     } catch (const ConfigError& error) {
       for (Diagnostic diagnostic : error.diagnostics()) {
         const Place& place = diagnostic.place.file ? diagnostic.place : node.place;

@@ -45,6 +45,7 @@ struct PlannedNode {
   std::optional<std::size_t> training;  ///< node that learned the policy it is about; none: not learned
   std::string parameters_text;          ///< part of the key text that comes from `resolved`; see key.h
   std::string family;                   ///< hash of that part: equal for all replicates
+  std::vector<std::string> columns;     ///< of the dataset it makes, where known; of the first replicate only
 };
 
 /// What a config asks for, before looking at any result. Everything that plan, why and run say comes from

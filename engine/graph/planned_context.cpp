@@ -24,6 +24,7 @@ InputNode input_node(const Plan& plan, const PlannedNode& node, const std::files
   input.streams = node.streams;
   input.makes = node.node->makes();
   if (node.training) input.training = plan.nodes[*node.training].key;
+  input.columns = node.columns;
   return input;
 }
 

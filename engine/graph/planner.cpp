@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "engine/data/file_system.h"
+#include "registry/text.h"
 
 namespace coppice {
 
@@ -243,6 +245,21 @@ bool Planner::join(const DeclaredElement& element, const DeclaredReference& refe
   return true;
 }
 
+/// What to write so that the element runs over further sweeps.
+std::string Planner::over_hint(const DeclaredElement& element,
+                               const std::vector<std::string>& missing) const {
+  std::vector<std::string> over;
+  for (const SweepPoints& sweep : plan_.experiment.sweeps) {
+    const bool has =
+        std::find(element.sweeps.begin(), element.sweeps.end(), sweep.id) != element.sweeps.end();
+    if (has && !sweep.from_command_line) over.push_back(sweep.id);
+  }
+  const bool none = over.empty();
+  over.insert(over.end(), missing.begin(), missing.end());
+  return fmt::format("{} over=\"{}\" {} this node", none ? "add" : "write", coppice::join(over),
+                     none ? "to" : "for");
+}
+
 bool Planner::check_match(const DeclaredElement& element, const DeclaredReference& reference,
                           const DeclaredTarget& target, const PlannedNode& reader,
                           const std::vector<std::size_t>& found) {
@@ -268,22 +285,28 @@ bool Planner::check_match(const DeclaredElement& element, const DeclaredReferenc
     return false;
   }
   if (found.size() == 1 || element.node->gathers(parameter)) return true;
-  const auto extra = [&](const std::string& sweep) {
-    return std::find(reader.sweeps.begin(), reader.sweeps.end(), sweep) == reader.sweeps.end();
-  };
-  const auto sweep = std::find_if(first.sweeps.begin(), first.sweeps.end(), extra);
-  const std::string why =
-      sweep != first.sweeps.end() ? fmt::format("it runs over the sweep '{}', this node does not", *sweep)
-      : first.replicates > 1      ? fmt::format("it has {} replicates, this node has none", first.replicates)
-                                  : std::string("it fans out");
-  const std::string hint = sweep != first.sweeps.end() ? fmt::format("add over=\"{}\" to this node", *sweep)
-                           : first.replicates > 1
-                               ? fmt::format("add replicates=\"{}\" to this node", first.replicates)
-                               : std::string();
-  diagnostics_.error(
-      target.place,
-      fmt::format("'{}' takes one node, and '{}' stands for {}: {}", parameter, read.id, found.size(), why),
-      hint);
+  std::vector<std::string> missing;
+  std::copy_if(first.sweeps.begin(), first.sweeps.end(), std::back_inserter(missing),
+               [&](const std::string& sweep) {
+                 return std::find(reader.sweeps.begin(), reader.sweeps.end(), sweep) == reader.sweeps.end();
+               });
+  const bool replicates = element.node->gathers_replicates(parameter);
+  if (missing.empty() && replicates) return true;
+  const std::string what =
+      fmt::format("'{}' takes {}, and '{}' stands for {}", parameter,
+                  replicates ? "a node at one sweep point" : "one node", read.id, found.size());
+  if (!missing.empty()) {
+    diagnostics_.error(target.place,
+                       fmt::format("{}: it runs over the sweep{} '{}', this node does not", what,
+                                   missing.size() > 1 ? "s" : "", coppice::join(missing, "', '")),
+                       over_hint(element, missing));
+  } else if (first.replicates > 1) {
+    diagnostics_.error(target.place,
+                       fmt::format("{}: it has {} replicates, this node has none", what, first.replicates),
+                       fmt::format("add replicates=\"{}\" to this node", first.replicates));
+  } else {
+    diagnostics_.error(target.place, what + ": it fans out");
+  }
   return false;
 }
 

@@ -24,6 +24,7 @@ class Planner {
   bool check_match(const DeclaredElement& element, const DeclaredReference& reference,
                    const DeclaredTarget& target, const PlannedNode& reader,
                    const std::vector<std::size_t>& found);
+  std::string over_hint(const DeclaredElement& element, const std::vector<std::string>& missing) const;
 
   Declarations& declarations_;
   Plan& plan_;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "engine/vocabulary/matrix.h"
@@ -36,6 +37,9 @@ struct Dataset {
 /// Rows of `parts` one after the other, episodes renumbered so that those of different parts differ. Throws
 /// std::invalid_argument when the parts have different spaces.
 Dataset join(const std::vector<Dataset>& parts);
+
+/// Names of the columns of a dataset, in the order in which write_dataset writes them.
+std::vector<std::string> dataset_column_names(const Spaces& spaces);
 
 /// Columns: episode, step, s_<axis>, action_id, a_<axis> (of the widest action), reward, n_<axis>, terminal;
 /// one transition per row. Throws std::runtime_error with the file and the system's reason when it cannot be

@@ -58,11 +58,14 @@ class Solver {
   static constexpr const char* kInterface = "solver";
   virtual ~Solver() = default;
 
-  /// What `start` will ask of its inputs, so that a config that lacks it is refused before anything runs.
+  /// What `start` will ask of its inputs and what it makes use of, so that a config that lacks something, or
+  /// gives something without effect, is refused before anything runs.
   struct Needs {
     bool samples = false;        ///< a dataset of transitions
     bool simulator = false;      ///< a problem that can be set to any state
     bool single_action = false;  ///< only one action id is supported
+    bool uses_value = false;     ///< takes a value function learned elsewhere, when given
+    bool uses_policy = false;    ///< takes a policy to begin with, when given
   };
   virtual Needs needs() const = 0;
   /// Throws std::invalid_argument when the inputs cannot be used.

@@ -45,6 +45,10 @@ struct CollectNode : Node {
     }
   }
 
+  std::vector<std::string> dataset_columns(const NodeContext& context) const override {
+    return dataset_column_names(load_problem(context.inputs("problem").front())->spaces());
+  }
+
   void run(NodeContext& context) const override {
     const auto target = load_problem(context.inputs("problem").front());
     const Dataset dataset = episodes > 0 ? play(*target, context) : sample(*target, context);

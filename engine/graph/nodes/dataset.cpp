@@ -1,3 +1,4 @@
+#include "engine/data/csv.h"
 #include "engine/data/table_file.h"
 #include "engine/graph/artifacts.h"
 
@@ -11,6 +12,17 @@ struct DatasetNode : Node {
 
   std::vector<std::string> makes() const override { return {"dataset", "timing"}; }
   bool random() const override { return false; }
+
+  std::vector<std::string> dataset_columns(const NodeContext& context) const override {
+    if (!problem.id.empty()) {
+      return dataset_column_names(load_problem(context.inputs("problem").front())->spaces());
+    }
+    try {
+      return CsvReader(read_source(file.path)).header();
+    } catch (const ConfigError&) {  // a file that is not there is reported with the key, its content by run
+      return {};
+    }
+  }
 
   void run(NodeContext& context) const override {
     const std::filesystem::path target = context.folder() / kDatasetFile;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -97,25 +98,12 @@ struct FitNode : Node {
     }
   }
 
-  /// A test on what was trained on measures nothing.
   void check(const NodeContext& context) const override {
-    if (test.id.empty()) return;
-    const InputNode& train = context.inputs("samples").front();
-    const InputNode& judge = context.inputs("test").front();
-    const bool same_draws =
-        !train.streams.empty() && !judge.streams.empty() && train.streams.front() == judge.streams.front();
-    if (same_draws) {
-      throw std::invalid_argument(fmt::format(
-          "samples '{}' and test '{}' come from the same draws ({}): give '{}' a seed_label of its own",
-          train.id, judge.id, judge.streams.front(), judge.id));
-    }
-    const std::string_view file = train.element.get("file");  // of datasets, which draw nothing
-    if (train.streams.empty() && !file.empty() && file == judge.element.get("file")) {
-      throw std::invalid_argument(
-          fmt::format("samples '{}' and test '{}' are the same file", train.id, judge.id));
-    }
+    Diagnostics mistakes;
+    check_columns(context, mistakes);
+    if (!test.id.empty()) check_test(context, mistakes);
+    mistakes.throw_if_any();
   }
-
   void run(NodeContext& context) const override {
     const Samples training = read_samples(dataset(context, "samples"), inputs, output);
     const MadeFunction function =
@@ -155,6 +143,40 @@ struct FitNode : Node {
   }
 
  private:
+  /// Every column must be in both datasets, as far as their columns are known.
+  void check_columns(const NodeContext& context, Diagnostics& mistakes) const {
+    const auto check = [&](const InputNode& data, std::string_view parameter, const std::string& column) {
+      const std::vector<std::string>& known = data.columns;
+      if (known.empty() || std::find(known.begin(), known.end(), column) != known.end()) return;
+      mistakes.error({}, fmt::format("{}: the dataset '{}' has no column '{}'", parameter, data.id, column),
+                     suggestion(column, known));
+    };
+    for (const std::string_view parameter : {"samples", "test"}) {
+      for (const InputNode& data : context.inputs(parameter)) {
+        for (const std::string& column : inputs) check(data, "inputs", column);
+        check(data, "output", output);
+      }
+    }
+  }
+
+  /// A test on what was trained on measures nothing.
+  static void check_test(const NodeContext& context, Diagnostics& mistakes) {
+    const InputNode& train = context.inputs("samples").front();
+    const InputNode& judge = context.inputs("test").front();
+    const bool same_draws =
+        !train.streams.empty() && !judge.streams.empty() && train.streams.front() == judge.streams.front();
+    if (same_draws) {
+      mistakes.error({},
+                     fmt::format("samples '{}' and test '{}' come from the same draws ({})", train.id,
+                                 judge.id, judge.streams.front()),
+                     fmt::format("give '{}' a seed_label of its own", judge.id));
+    }
+    const std::string_view file = train.element.get("file");  // of datasets, which draw nothing
+    if (train.streams.empty() && !file.empty() && file == judge.element.get("file")) {
+      mistakes.error({}, fmt::format("samples '{}' and test '{}' are the same file", train.id, judge.id));
+    }
+  }
+
   static std::filesystem::path dataset(const NodeContext& context, std::string_view parameter) {
     return context.inputs(parameter).front().folder / kDatasetFile;
   }

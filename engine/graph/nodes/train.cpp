@@ -80,26 +80,12 @@ struct TrainNode : Node {
 
   std::vector<std::string> makes() const override { return {"policy", "function", "progress", "timing"}; }
   bool learns() const override { return true; }
-  bool gathers(std::string_view parameter) const override { return parameter == "samples"; }
+  bool gathers_replicates(std::string_view parameter) const override { return parameter == "samples"; }
   std::vector<std::string> labelled_tables() const override { return {std::string(kProgressFile)}; }
 
   void check(const NodeContext& context) const override {
     const auto target = load_problem(context.inputs("problem").front());
-    const Solver::Needs needs = solver->needs();
-    const std::string& name = solver.resolved.name;
-    if (needs.samples && samples.empty()) {
-      throw std::invalid_argument(
-          fmt::format("<{}> learns from samples: give samples=\"...\", a collect or dataset node", name));
-    }
-    if (needs.simulator && target->simulator() == nullptr) {
-      throw std::invalid_argument(fmt::format(
-          "<{}> needs a problem that can be set to any state; '{}' only offers episodes", name, problem.id));
-    }
-    const std::size_t actions = target->spaces().actions.size();
-    if (needs.single_action && actions != 1) {
-      throw std::invalid_argument(fmt::format(
-          "<{}> can choose the parameters of one action; '{}' has {} actions", name, problem.id, actions));
-    }
+    check_needs(*target);
     if (!policy.id.empty()) load_policy(context.inputs("policy").front(), *target);
   }
 
@@ -133,6 +119,37 @@ struct TrainNode : Node {
   }
 
  private:
+  /// All that the solver lacks, and all that it would not look at.
+  void check_needs(const Problem& target) const {
+    const Solver::Needs needs = solver->needs();
+    const std::string& name = solver.resolved.name;
+    Diagnostics mistakes;
+    if (needs.samples && samples.empty()) {
+      mistakes.error({}, fmt::format("<{}> learns from samples", name),
+                     "give samples=\"...\", a collect or dataset node");
+    }
+    if (needs.simulator && target.simulator() == nullptr) {
+      mistakes.error({}, fmt::format("<{}> needs a problem that can be set to any state; '{}' only offers "
+                                     "episodes",
+                                     name, problem.id));
+    }
+    const std::size_t actions = target.spaces().actions.size();
+    if (needs.single_action && actions != 1) {
+      mistakes.error({}, fmt::format("<{}> can choose the parameters of one action; '{}' has {} actions",
+                                     name, problem.id, actions));
+    }
+    const std::string takes =
+        fmt::format("<{}> takes problem, samples{}{}", name, needs.uses_value ? ", value" : "",
+                    needs.uses_policy ? ", policy" : "");
+    const auto refuse = [&](bool used, std::string_view parameter, const Reference& given) {
+      if (used || given.id.empty()) return;
+      mistakes.error({}, fmt::format("<{}> makes no use of {}=\"{}\"", name, parameter, given.id), takes);
+    };
+    refuse(needs.uses_value, "value", value);
+    refuse(needs.uses_policy, "policy", policy);
+    mistakes.throw_if_any();
+  }
+
   Dataset gather(const NodeContext& context, const Spaces& spaces) const {
     std::vector<Dataset> parts;
     for (const InputNode& node : context.inputs("samples")) parts.push_back(load_dataset(node, spaces));

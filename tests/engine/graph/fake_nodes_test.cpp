@@ -51,12 +51,13 @@ const Component<Node, Constant> kConstant("fake_constant", "A number.", "no publ
 /// Reads data, one or many, and makes data.
 struct Step : Node {
   Reference from;
-  References many;
+  References many, runs;
   Reference constant;
   double factor = 2;
 
   std::vector<std::string> makes() const override { return {"data"}; }
   bool gathers(std::string_view parameter) const override { return parameter == "many"; }
+  bool gathers_replicates(std::string_view parameter) const override { return parameter == "runs"; }
   void check(const NodeContext&) const override {
     if (factor == 13) throw std::invalid_argument("factor must not be 13");
   }
@@ -71,6 +72,7 @@ struct Step : Node {
     return node_parameters<Step>()
         .reference("from", &Step::from, "data", "What it reads.", false)
         .references("many", &Step::many, "data", "More that it reads.", false)
+        .references("runs", &Step::runs, "data", "Replicates that it reads.", false)
         .reference("constant", &Step::constant, "constant", "A number.", false)
         .add("factor", &Step::factor, "", "Number.");
   }

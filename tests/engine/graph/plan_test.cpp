@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <ctime>
 #include <fstream>
 #include <set>
@@ -53,6 +54,18 @@ TEST(Join, ANodeOverMoreSweepsIsGatheredOrRefused) {
       "'from' takes one node, and 'x' stands for 2: it runs over the sweep 't', this node does not"));
 }
 
+TEST(Join, WhatGathersReplicatesTakesNoSweepPoints) {
+  const std::string source =
+      "<fake_source id='x' over='s, t' replicates='2'/><fake_source id='o' replicates='2'/>";
+  const Plan plan = planned(source + "<fake_step id='y' over='s, t' runs='x, o'/>", {kAb, k12});
+  EXPECT_EQ(inputs_of(plan, "y p=b,q=1"), (Names{"x p=b,q=1 r000", "x p=b,q=1 r001", "o r000", "o r001"}));
+  EXPECT_TRUE(contains(errors(source + "<fake_step id='y' runs='x'/>", {kAb, k12}),
+                       "'runs' takes a node at one sweep point, and 'x' stands for 8: it runs over the "
+                       "sweeps 's', 't', this node does not | add over=\"s, t\" to this node"));
+  EXPECT_TRUE(contains(errors(source + "<fake_step id='y' over='t' replicates='2' runs='x'/>", {kAb, k12}),
+                       "it runs over the sweep 's', this node does not | write over=\"t, s\" for this node"));
+}
+
 TEST(Join, ReplicatesMeetOneToOneAreSharedOrGathered) {
   const Plan plan = planned(
       "<fake_source id='one'/><fake_source id='x' replicates='3'/><fake_step id='pair' replicates='3' "
@@ -97,8 +110,9 @@ TEST(References, MistakesAreLocatedAndNameTheNearest) {
   EXPECT_TRUE(
       contains(errors("<fake_constant id='c'/><fake_source id='d'/><fake_step id='y' from='c'/>"),
                "'from' needs a node that makes a data, and 'c' (<fake_constant>) makes none | valid: d"));
-  EXPECT_TRUE(
-      contains(errors("<fake_source id='x'/><fake_step id='y' many='x, x'/>"), "'many' names 'x' twice"));
+  const std::string twice = errors("<fake_source id='x'/><fake_step id='y' many='x, x'/>");
+  EXPECT_TRUE(contains(twice, "'x' stands twice in 'many'"));
+  EXPECT_EQ(std::count(twice.begin(), twice.end(), '\n'), 1) << twice;
   EXPECT_TRUE(contains(errors("<fake_source id='x'/><fake_source id='x'/>"), "the id 'x' is already used"));
   EXPECT_TRUE(
       contains(errors("<fake_sorce id='x'/>"), "no node kind <fake_sorce> | did you mean 'fake_source'"));

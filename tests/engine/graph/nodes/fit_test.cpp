@@ -12,6 +12,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Attributes = std::vector<std::pair<std::string, std::string>>;
 
 /// A dataset node's folder with a table in it.
@@ -79,6 +80,24 @@ TEST(Fit, NamesTheColumnThatIsNotThere) {
   context.given["samples"] = {train.node("train")};
   EXPECT_THAT(error_of([&] { fit("constant")->run(context); }),
               AllOf(HasSubstr("no column 'x2'"), HasSubstr("x3")));
+}
+
+TEST(Fit, ChecksColumnsThatAreKnownBeforeItRuns) {
+  FakeContext context;
+  InputNode train, test;
+  train.id = "train";
+  train.columns = {"x1", "x3", "z"};
+  test.id = "test";
+  test.columns = {"x1", "x2", "y"};
+  context.given["samples"] = {train};
+  context.given["test"] = {test};
+  EXPECT_THAT(error_of([&] {
+                fit("constant", {{"test", "test"}})->check(context);
+              }),
+              AllOf(HasSubstr("inputs: the dataset 'train' has no column 'x2'"), HasSubstr("did you mean"),
+                    HasSubstr("output: the dataset 'train' has no column 'y'"), Not(HasSubstr("'test'"))));
+  context.given["samples"].front().columns = {};  // unknown
+  EXPECT_EQ(error_of([&] { fit("constant", {{"test", "test"}})->check(context); }), "");
 }
 
 TEST(Fit, RefusesATestSetFromTheDrawsOfTheSamples) {

@@ -9,7 +9,9 @@
 namespace coppice::testing {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Attributes = std::vector<std::pair<std::string, std::string>>;
 
 /// Pretends to learn: after n units the "policy" is a constant made of n draws and of the samples' rewards.
@@ -51,9 +53,9 @@ class FakeTraining : public Training {
 
 struct FakeSolver : Solver {
   int units = 6;
-  bool samples = false, simulator = false, single_action = false;
+  bool samples = false, simulator = false, single_action = false, value = false, policy = false;
 
-  Needs needs() const override { return {samples, simulator, single_action}; }
+  Needs needs() const override { return {samples, simulator, single_action, value, policy}; }
   std::unique_ptr<Training> start(const TrainingInputs& inputs) const override {
     return std::make_unique<FakeTraining>(units, inputs);
   }
@@ -62,7 +64,9 @@ struct FakeSolver : Solver {
         .add("units", &FakeSolver::units, "", "Units of work.", at_least(1))
         .add("samples", &FakeSolver::samples, "", "Needs samples.")
         .add("simulator", &FakeSolver::simulator, "", "Needs a simulator.")
-        .add("single_action", &FakeSolver::single_action, "", "Needs a single action.");
+        .add("single_action", &FakeSolver::single_action, "", "Needs a single action.")
+        .add("value", &FakeSolver::value, "", "Uses a value function.")
+        .add("policy", &FakeSolver::policy, "", "Uses a policy.");
   }
 };
 const Component<Solver, FakeSolver> kFakeSolver("fake_solver", "Learns nothing.", "no publication");
@@ -171,6 +175,24 @@ TEST(Train, SaysWhatTheSolverNeeds) {
   EXPECT_EQ(error(car, {{"simulator", "true"}, {"single_action", "true"}}), "");
   EXPECT_THAT(error(live, {{"simulator", "true"}}), HasSubstr("only offers episodes"));
   EXPECT_THAT(error(live, {{"single_action", "true"}}), HasSubstr("has 2 actions"));
+  EXPECT_THAT(error(live, {{"samples", "true"}, {"single_action", "true"}}),
+              AllOf(HasSubstr("give samples="), HasSubstr("has 2 actions")));
+}
+
+TEST(Train, RefusesWhatTheSolverMakesNoUseOf) {
+  FakeContext context;
+  give_problem(context);
+  context.given["value"].emplace_back().id = "v";
+  context.given["policy"] = {input(element("policy", {{"id", "p"}}, {element("random", {})}))};
+  const auto error = [&](const Attributes& solver) {
+    return error_of([&] { training(solver, {{"value", "v"}, {"policy", "p"}})->check(context); });
+  };
+  EXPECT_THAT(error({}), AllOf(HasSubstr("<fake_solver> makes no use of value=\"v\""),
+                               HasSubstr("<fake_solver> makes no use of policy=\"p\""),
+                               HasSubstr("<fake_solver> takes problem, samples")));
+  EXPECT_THAT(error({{"value", "true"}}), AllOf(Not(HasSubstr("value=")), HasSubstr("policy=\"p\""),
+                                                HasSubstr("takes problem, samples, value")));
+  EXPECT_EQ(error({{"value", "true"}, {"policy", "true"}}), "");
 }
 
 }  // namespace
