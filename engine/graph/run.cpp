@@ -225,6 +225,8 @@ void run_node(const fs::path& run_folder, const std::string& key, const RunOptio
     } catch (const std::bad_alloc&) {
       if (limit <= 0) throw;
       throw out_of_memory();
+    } catch (const Interrupted&) {
+      throw;
     } catch (const std::runtime_error& error) {
       if (limit <= 0 || peak_memory() < limit) throw;
       // Whatever it was, it happened where even small calls of the system are refused their memory.
