@@ -59,6 +59,10 @@ std::vector<Wanted> dataset_columns(const Spaces& spaces) {
 /// Finds the columns in the header. `prefixes` begin the names that only expected columns may have.
 void locate(std::vector<Wanted>& columns, const CsvReader& reader, const std::vector<std::string>& prefixes) {
   Diagnostics errors;
+  if (reader.header().size() == 1 && reader.header().front().find_first_of(";\t") != std::string::npos) {
+    throw ConfigError({Diagnostic{
+        reader.header_place(0), "the header is one field", "fields are separated by commas", {}}});
+  }
   std::vector<std::string> expected;
   for (const Wanted& column : columns) expected.push_back(column.info.name);
   for (Wanted& column : columns) {
@@ -115,6 +119,47 @@ void read_rows(std::vector<Wanted>& columns, CsvReader& reader, const Check& che
   errors.throw_if_any();
 }
 
+/// The last value read of a column is one that the axis allows, up to rounding: the problem would have taken
+/// another action than the one that stands there.
+void check_inside(const Axis& axis, const Wanted& column, const CsvReader& reader, Diagnostics& errors) {
+  const double value = column.values.back();
+  const double slack = 1e-6 * (axis.high - axis.low);
+  if (axis.circular || (value >= axis.low - slack && value <= axis.high + slack)) return;
+  errors.error(reader.place(column.position),
+               fmt::format("'{}' is {}, and this action's is in [{}, {}]{}{}", column.info.name, value,
+                           axis.low, axis.high, axis.unit.empty() ? "" : " ", axis.unit));
+}
+
+/// Rows stand in the order of their episodes and steps, and none follows an episode's terminal step.
+class OrderCheck {
+ public:
+  /// Looks at the last row read.
+  void row(const Wanted& episode, const Wanted& step, const Wanted& terminal, const CsvReader& reader,
+           Diagnostics& errors) {
+    const double number = episode.values.back(), time = step.values.back();
+    if (number < episode_) {
+      errors.error(reader.place(episode.position),
+                   fmt::format("episode {} stands below episode {}", number, episode_),
+                   "rows stand in the order of their episodes, then steps");
+    } else if (number == episode_ && terminal_) {
+      errors.error(reader.place(step.position),
+                   fmt::format("episode {} goes on after a terminal step", number));
+    } else if (number == episode_ && time <= step_) {
+      errors.error(reader.place(step.position),
+                   fmt::format("step {} of episode {} stands below step {}", time, number, step_),
+                   "rows stand in the order of their episodes, then steps");
+    }
+    episode_ = number;
+    step_ = time;
+    terminal_ = terminal.values.back() != 0;
+  }
+
+ private:
+  double episode_ = -1;
+  double step_ = -1;
+  bool terminal_ = false;
+};
+
 /// The action of the last row read exists, and has the parameters that it must have. `id` is the column of
 /// the action's id; its parameters follow.
 void check_action(const std::vector<Wanted>& columns, std::size_t id, const Spaces& spaces,
@@ -129,6 +174,7 @@ void check_action(const std::vector<Wanted>& columns, std::size_t id, const Spac
   for (std::size_t i = 0; i < spaces.widest_action(); ++i) {
     const Wanted& column = columns[id + 1 + i];
     const bool given = !std::isnan(column.values.back());
+    if (given && i < box.axes.size()) check_inside(box.axes[i], column, reader, errors);
     if (given == (i < box.axes.size())) continue;
     errors.error(reader.place(column.position),
                  fmt::format("'{}' must {} for action {} ('{}', {} parameters)", column.info.name,
@@ -207,7 +253,14 @@ Dataset read_dataset(const std::filesystem::path& file, const Spaces& spaces) {
   const std::size_t states = spaces.state_size();
   const std::size_t id = 2 + states;
   const std::size_t reward = id + 1 + spaces.widest_action();
-  read_rows(columns, reader, [&](Diagnostics& errors) { check_action(columns, id, spaces, reader, errors); });
+  OrderCheck order;
+  read_rows(columns, reader, [&](Diagnostics& errors) {
+    check_action(columns, id, spaces, reader, errors);
+    order.row(columns[0], columns[1], columns.back(), reader, errors);
+  });
+  if (columns.front().values.empty()) {
+    throw ConfigError({Diagnostic{reader.header_place(0), "there are no rows below the header", {}, {}}});
+  }
 
   Dataset dataset(spaces, columns.front().values.size());
   take(columns[0], dataset.episode);

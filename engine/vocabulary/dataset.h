@@ -49,7 +49,8 @@ void write_dataset(const std::filesystem::path& file, const Dataset& dataset);
 /// Reads what write_dataset wrote, or any CSV with these columns, in any order; `spaces` says which axes are
 /// expected. Other columns are skipped, unless their names begin as an axis's (s_, a_, n_). Throws
 /// ConfigError with file, line and column of the bad cells, and the nearest name for a column that is
-/// missing.
+/// missing; also for actions outside their boxes, for rows that do not stand in the order of episodes and
+/// steps or follow a terminal step, and when there are none.
 Dataset read_dataset(const std::filesystem::path& file, const Spaces& spaces);
 
 /// Reads the columns s_<axis> of a CSV text (rows x axes). Throws as read_dataset.

@@ -27,7 +27,7 @@ Dataset sample() {
       dataset.next(i, c) = stream.normal();
     }
     dataset.reward[i] = stream.normal();
-    dataset.set_action(i, {0, {stream.normal(), stream.normal()}});
+    dataset.set_action(i, {0, {stream.uniform(), stream.uniform()}});
   }
   Action wait;
   wait.id = 1;
@@ -150,9 +150,39 @@ TEST(DatasetFile, BadFilesAreRefused) {
       std::string::npos);
 }
 
-TEST(DatasetFile, WithoutRowsIsAnEmptyDataset) {
-  const TemporaryFolder folder;
-  EXPECT_EQ(read_dataset(folder.write("d.csv", kHeader), kSpaces).rows(), 0u);
+TEST(DatasetFile, WithoutRowsIsRefused) {
+  EXPECT_NE(error_of(kHeader).find("d.csv:1:1: error: there are no rows below the header"),
+            std::string::npos);
+}
+
+TEST(DatasetFile, OtherSeparatorsAreNamed) {
+  EXPECT_NE(error_of("episode;step;s_position\n0;0;0\n").find("fields are separated by commas"),
+            std::string::npos);
+}
+
+TEST(DatasetFile, ActionsOutsideTheirBoxesAreRefused) {
+  const std::string error = error_of(std::string(kHeader) +
+                                     "0,0,0,0,0,1.00000001,-3,0,0,0,0\n"
+                                     "0,1,0,0,0,57.3,0,0,0,0,0\n");
+  EXPECT_EQ(error.find("d.csv:2"), std::string::npos) << error;
+  EXPECT_NE(error.find("d.csv:3:11: error: 'a_force' is 57.3, and this action's is in [-1, 1] N"),
+            std::string::npos)
+      << error;
+}
+
+TEST(DatasetFile, RowsOutOfOrderAreRefused) {
+  const std::string error = error_of(std::string(kHeader) +
+                                     "0,0,0,0,1,,,0,0,0,0\n"
+                                     "0,2,0,0,1,,,0,0,0,0\n"
+                                     "0,2,0,0,1,,,0,0,0,0\n"
+                                     "3,5,0,0,1,,,0,0,0,1\n"
+                                     "3,6,0,0,1,,,0,0,0,0\n"
+                                     "2,0,0,0,1,,,0,0,0,0\n");
+  for (const char* expected : {"d.csv:4:3: error: step 2 of episode 0 stands below step 2",
+                               "d.csv:6:3: error: episode 3 goes on after a terminal step",
+                               "d.csv:7:1: error: episode 2 stands below episode 3"}) {
+    EXPECT_NE(error.find(expected), std::string::npos) << expected << "\nin\n" << error;
+  }
 }
 
 TEST(ReadStates, ReadsTheStateColumns) {
