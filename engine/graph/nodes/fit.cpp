@@ -19,12 +19,11 @@ struct Samples {
   Matrix x, y;
 };
 
-/// Throws ConfigError with file, line and column for a cell that is no number.
-Samples read_samples(const std::filesystem::path& file, const std::vector<std::string>& inputs,
-                     const std::string& output) {
+/// Appends the values of the named columns, row after row. Throws ConfigError with file, line and column for
+/// a cell that is no number.
+void read_values(const std::filesystem::path& file, const std::vector<std::string>& names,
+                 std::vector<double>& values) {
   CsvReader reader(read_source(file.string()));
-  std::vector<std::string> names = inputs;
-  names.push_back(output);
   std::vector<std::size_t> fields;
   for (const std::string& name : names) {
     const std::optional<std::size_t> field = reader.column(name);
@@ -36,7 +35,6 @@ Samples read_samples(const std::filesystem::path& file, const std::vector<std::s
     }
     fields.push_back(*field);
   }
-  std::vector<double> values;  // row after row
   while (reader.next()) {
     for (std::size_t i = 0; i < fields.size(); ++i) {
       const std::optional<double> value = parse_number(reader[fields[i]]);
@@ -50,11 +48,20 @@ Samples read_samples(const std::filesystem::path& file, const std::vector<std::s
       values.push_back(*value);
     }
   }
-  const std::size_t rows = values.size() / fields.size();
-  if (rows == 0) throw ConfigError(fmt::format("{}: there is nothing to fit: no rows", file.string()));
+}
+
+/// The rows of all the datasets, one after the other.
+Samples read_samples(const std::vector<InputNode>& datasets, const std::vector<std::string>& inputs,
+                     const std::string& output) {
+  std::vector<std::string> names = inputs;
+  names.push_back(output);
+  std::vector<double> values;
+  for (const InputNode& dataset : datasets) read_values(dataset.folder / kDatasetFile, names, values);
+  const std::size_t rows = values.size() / names.size();
+  if (rows == 0) throw ConfigError(fmt::format("'{}' has no rows", datasets.front().id));
   Samples samples{Matrix(rows, inputs.size()), Matrix(rows, 1)};
   for (std::size_t i = 0; i < rows; ++i) {
-    const std::span<const double> row(values.data() + i * fields.size(), fields.size());
+    const std::span<const double> row(values.data() + i * names.size(), names.size());
     samples.x.set_row(i, row.first(inputs.size()));
     samples.y(i, 0) = row.back();
   }
@@ -88,6 +95,9 @@ struct FitNode : Node {
 
   std::vector<std::string> makes() const override { return {"function", "scores", "timing"}; }
   std::vector<std::string> labelled_tables() const override { return {"scores.csv"}; }
+  bool gathers_replicates(std::string_view parameter) const override {
+    return parameter == "samples" || parameter == "test";
+  }
 
   void check() const {
     for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -105,7 +115,7 @@ struct FitNode : Node {
     mistakes.throw_if_any();
   }
   void run(NodeContext& context) const override {
-    const Samples training = read_samples(dataset(context, "samples"), inputs, output);
+    const Samples training = read_samples(context.inputs("samples"), inputs, output);
     const MadeFunction function =
         approximator->fit({training.x, training.y, {}}, context.draws().fork("fit"), context.parallel());
     FunctionFile file{.writer = {},
@@ -125,7 +135,7 @@ struct FitNode : Node {
                       {"r2", Type::number, "", "Share of the output's variance that is explained."}};
     scores.rows.push_back(score("train", *function, training));
     if (!test.id.empty()) {
-      scores.rows.push_back(score("test", *function, read_samples(dataset(context, "test"), inputs, output)));
+      scores.rows.push_back(score("test", *function, read_samples(context.inputs("test"), inputs, output)));
     }
     write_table(context.folder() / "scores.csv", scores);
     context.count("samples", static_cast<std::int64_t>(training.x.rows()));
@@ -161,24 +171,28 @@ struct FitNode : Node {
 
   /// A test on what was trained on measures nothing.
   static void check_test(const NodeContext& context, Diagnostics& mistakes) {
-    const InputNode& train = context.inputs("samples").front();
-    const InputNode& judge = context.inputs("test").front();
+    for (const InputNode& train : context.inputs("samples")) {
+      for (const InputNode& judge : context.inputs("test")) {
+        if (check_pair(train, judge, mistakes)) return;
+      }
+    }
+  }
+
+  /// True when it found a mistake.
+  static bool check_pair(const InputNode& train, const InputNode& judge, Diagnostics& mistakes) {
     const bool same_draws =
         !train.streams.empty() && !judge.streams.empty() && train.streams.front() == judge.streams.front();
+    const std::string_view file = train.element.get("file");  // of datasets, which draw nothing
+    const bool same_file = train.streams.empty() && !file.empty() && file == judge.element.get("file");
     if (same_draws) {
       mistakes.error({},
                      fmt::format("samples '{}' and test '{}' come from the same draws ({})", train.id,
                                  judge.id, judge.streams.front()),
                      fmt::format("give '{}' a seed_label of its own", judge.id));
-    }
-    const std::string_view file = train.element.get("file");  // of datasets, which draw nothing
-    if (train.streams.empty() && !file.empty() && file == judge.element.get("file")) {
+    } else if (same_file) {
       mistakes.error({}, fmt::format("samples '{}' and test '{}' are the same file", train.id, judge.id));
     }
-  }
-
-  static std::filesystem::path dataset(const NodeContext& context, std::string_view parameter) {
-    return context.inputs(parameter).front().folder / kDatasetFile;
+    return same_draws || same_file;
   }
 };
 

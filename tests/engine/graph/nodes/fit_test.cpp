@@ -66,6 +66,18 @@ TEST(Fit, FindsAPlaneAndScoresItOnBothSets) {
   EXPECT_NEAR(y, 20, 1e-8);
 }
 
+TEST(Fit, TakesTheSamplesOfAllReplicates) {
+  const Data first("x1,x2,y\n0,0,1\n1,0,3\n"), second("y,x1,x2\n0,0,1\n2,1,1\n4,2,1\n");  // y = 1 + 2 x1 - x2
+  FakeContext context;
+  context.given["samples"] = {first.node("train"), second.node("train")};
+  const auto node = fit("linear");
+  EXPECT_TRUE(node->gathers_replicates("samples"));
+  node->run(context);
+  const Table scores = read_table(context.folder() / "scores.csv");
+  EXPECT_EQ(number(scores.rows.at(0).at(scores.column("samples"))), 5);
+  EXPECT_NEAR(number(scores.rows.at(0).at(scores.column("rmse"))), 0, 1e-9);
+}
+
 TEST(Fit, NamesTheCellThatIsNoNumber) {
   const Data train("x1,x2,y\n0,0,1\n0,,2\n");
   FakeContext context;
@@ -113,6 +125,12 @@ TEST(Fit, RefusesATestSetFromTheDrawsOfTheSamples) {
                 fit("constant", {{"test", "test"}})->check(context);
               }),
               HasSubstr("seed_label"));
+  train.streams = {"collect 1"};
+  context.given["samples"].insert(context.given["samples"].begin(), train);  // one replicate of two is enough
+  EXPECT_THAT(error_of([&] {
+                fit("constant", {{"test", "test"}})->check(context);
+              }),
+              HasSubstr("same draws (collect 0)"));
   context.given["test"].front().streams = {"test 0", "train 0",
                                            "collect 0"};  // only its policy saw the samples
   EXPECT_EQ(error_of([&] { fit("constant", {{"test", "test"}})->check(context); }), "");
