@@ -89,9 +89,4 @@ std::string slot_text(const SlotInfo& slot) {
   return text + ")";
 }
 
-std::string with_article(std::string_view noun) {
-  const bool vowel = !noun.empty() && std::string_view("aeiou").find(noun.front()) != std::string_view::npos;
-  return fmt::format("{} {}", vowel ? "an" : "a", noun);
-}
-
 }  // namespace coppice

@@ -24,7 +24,4 @@ std::string parameter_text(const ParameterInfo& info);
 /// "Learns the value. (an approximator, default extra_trees)"
 std::string slot_text(const SlotInfo& slot);
 
-/// "an approximator", "a solver".
-std::string with_article(std::string_view noun);
-
 }  // namespace coppice

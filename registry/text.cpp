@@ -90,4 +90,9 @@ std::string join(const std::vector<std::string>& items, std::string_view separat
   return text;
 }
 
+std::string with_article(std::string_view noun) {
+  const bool vowel = !noun.empty() && std::string_view("aeiou").find(noun.front()) != std::string_view::npos;
+  return (vowel ? "an " : "a ") + std::string(noun);
+}
+
 }  // namespace coppice

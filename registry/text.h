@@ -32,4 +32,7 @@ std::vector<std::string_view> split_list(std::string_view text);
 /// "a, b, c"
 std::string join(const std::vector<std::string>& items, std::string_view separator = ", ");
 
+/// "a policy", "an evaluation"
+std::string with_article(std::string_view noun);
+
 }  // namespace coppice

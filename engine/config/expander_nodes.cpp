@@ -103,8 +103,8 @@ bool Expander::check_shared_columns(const Attribute& over, const std::vector<Def
       const Definition* hidden = context.scope->find_before(*global_, column);
       if (hidden == nullptr) continue;
       error(over.value_place, context,
-            fmt::format("the column '{}' of sweep '{}' has the name of a {}", column, sweep->points.id,
-                        hidden->what));
+            fmt::format("the column '{}' of sweep '{}' has the name of {}", column, sweep->points.id,
+                        with_article(hidden->what)));
       return false;
     }
   }

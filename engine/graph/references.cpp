@@ -12,11 +12,6 @@
 namespace coppice {
 namespace {
 
-std::string with_article(const std::string& noun) {
-  const bool vowel = !noun.empty() && std::string_view("aeiou").find(noun.front()) != std::string_view::npos;
-  return (vowel ? "an " : "a ") + noun;
-}
-
 /// Finds the nodes that reference parameters name.
 class ReferenceReader {
  public:

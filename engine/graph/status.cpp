@@ -64,6 +64,7 @@ struct Selected {
     for (std::size_t i = plan.nodes.size(); i-- > 0;) {  // what a wanted node needs is wanted
       if (in[i]) each_input(plan.nodes[i], [&](std::size_t input) { in[input] = true; });
     }
+    for (const std::string& id : selection.force) check_wanted(plan, id);
     for (std::size_t i = 0; i < plan.nodes.size(); ++i) {  // what depends on a forced node is forced
       each_input(plan.nodes[i], [&](std::size_t input) { forced[i] = forced[i] || forced[input]; });
     }
@@ -74,6 +75,13 @@ struct Selected {
     const std::vector<std::size_t> found = plan.find(id);
     if (found.empty()) unknown_id(plan, id);
     for (const std::size_t i : found) marks[i] = true;
+  }
+
+  /// To force what the selection leaves out would do nothing.
+  void check_wanted(const Plan& plan, const std::string& id) const {
+    const std::vector<std::size_t> found = plan.find(id);
+    if (std::any_of(found.begin(), found.end(), [this](std::size_t i) { return in[i]; })) return;
+    throw ConfigError(fmt::format("'{}' is forced, and not among the nodes selected nor what they need", id));
   }
 
   template <class F>

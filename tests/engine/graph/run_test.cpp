@@ -269,6 +269,14 @@ TEST_F(Run, ForcesANodeAndWhatDependsOnIt) {
   EXPECT_EQ(results(), before);
 }
 
+TEST_F(Run, ToForceWhatIsNotSelectedIsAMistake) {
+  RunOptions options;
+  options.selection = {{"x"}, {"y"}};
+  EXPECT_THROW(go(kChain, options), ConfigError);
+  options.selection = {{"y"}, {"x"}};  // y needs x
+  EXPECT_EQ(go(kChain, options).totals.finished, 6u);
+}
+
 TEST_F(Run, TwoRunsInOneFolderAreRefused) {
   RunFolder other(out_ / "test");
   other.lock();
