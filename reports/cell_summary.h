@@ -17,7 +17,12 @@ struct CellSummary {
   std::string caution;
 };
 
+/// How the interval of a mean is made: Student's, wider where values are skewed, or the studentized bootstrap
+/// over units, and over the episodes of each run where they were kept.
+enum class IntervalMethod { t, bootstrap };
+
 /// `nodes` are evaluations.
-CellSummary summarize(const std::vector<InputNode>& nodes, const TableCell& cell, Metric metric);
+CellSummary summarize(const std::vector<InputNode>& nodes, const TableCell& cell, Metric metric,
+                      IntervalMethod method = IntervalMethod::t);
 
 }  // namespace coppice

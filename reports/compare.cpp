@@ -170,7 +170,7 @@ struct CompareNode : Node {
 const Component<Node, CompareNode> kComponent(
     "compare",
     "Compare evaluated policies two by two: difference with interval, p-value, who is likely better.",
-    "Welch 1947; Holm 1979; Agarwal et al. 2021 (probability of improvement)", 2);
+    "Welch 1947; Holm 1979; Agarwal et al. 2021 (probability of improvement)", 3);
 
 }  // namespace
 }  // namespace coppice

@@ -22,6 +22,7 @@ struct TableNode : Node {
   References of;
   std::vector<std::string> rows, columns;
   Metric metric = Metric::cost;
+  IntervalMethod interval = IntervalMethod::t;
   FilePath published, reference_file;
   std::optional<double> reference;
 
@@ -47,8 +48,8 @@ struct TableNode : Node {
     for (std::size_t i = 0; i < content.cells.size(); ++i) {
       const TableCell& cell = content.cells[i];
       const double target = reference ? *reference : content.references.find(cell);
-      add_values(table.rows[i], summarize(context.inputs("of"), cell, metric), content.published.find(cell),
-                 target);
+      add_values(table.rows[i], summarize(context.inputs("of"), cell, metric, interval),
+                 content.published.find(cell), target);
     }
     write_table(context.folder() / kTableFile, table);
   }
@@ -61,6 +62,11 @@ struct TableNode : Node {
              "What tells the rows apart: columns of sweeps, problem, policy, node (the evaluation's id).")
         .add("columns", &This::columns, "", "What tells the columns apart, likewise.")
         .choice("metric", &This::metric, metric_names(), "What is shown.")
+        .choice(
+            "interval", &This::interval, {"t", "bootstrap"},
+            "Interval of the mean: Student's, wider where values are skewed; or the studentized bootstrap "
+            "over training runs and the episodes in them (over episodes of a policy that was not learned), "
+            "from 10 on.")
         .add("published", &This::published, "",
              "CSV file of published values: column value, and keys of the table.")
         .automatic("reference", &This::reference, "", "Best value known, for every cell; auto: none.")
@@ -102,7 +108,7 @@ struct TableNode : Node {
         {"optimality_gap", Type::number, "",
          "Mean over replicates of what they miss the reference by; those that reach it count 0."},
         {"iqm_ci95_low", Type::number, "",
-         "Lower end of the studentized bootstrap 95 % interval of iqm over replicates, from 10 on."},
+         "Lower end of the 95 % interval of iqm over replicates, from 5 on (that of a trimmed mean)."},
         {"iqm_ci95_high", Type::number, "", "Upper end of that interval."},
         {"caution", Type::text, "", "Why the interval of the mean may cover less than 95 %; else empty."}};
     table.columns.insert(table.columns.end(), columns_of_values.begin(), columns_of_values.end());
@@ -132,7 +138,7 @@ struct TableNode : Node {
 
 const Component<Node, TableNode> kComponent(
     "table", "Summarize evaluations: mean, interval, interquartile mean, worst and best of replicates.",
-    "Agarwal et al. 2021 (interquartile mean, optimality gap)", 3);
+    "Agarwal et al. 2021 (interquartile mean, optimality gap)", 4);
 
 }  // namespace
 }  // namespace coppice

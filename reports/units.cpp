@@ -21,8 +21,9 @@ Units units_of(const std::vector<InputNode>& nodes, const TableCell& cell, Metri
     if (known == trainings.end()) {
       trainings.push_back(node.training);
       values.emplace_back();
-      units.runs.push_back({node.replicate, 0});
+      units.runs.push_back({node.replicate, 0, {}});
     }
+    units.runs[run].evaluations.push_back(i);
     values[run].push_back(units.last.mean);
   }
   for (std::size_t run = 0; run < values.size(); ++run) units.runs[run].mean = mean(values[run]);

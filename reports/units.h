@@ -10,8 +10,9 @@ namespace coppice {
 
 /// The evaluations of one training run, or one independent repetition of what was not learned.
 struct Run {
-  std::optional<int> replicate;  ///< of the first of its evaluations
-  double mean = 0;               ///< of its evaluations' means
+  std::optional<int> replicate;          ///< of the first of its evaluations
+  double mean = 0;                       ///< of its evaluations' means
+  std::vector<std::size_t> evaluations;  ///< which of the nodes
 };
 
 /// What was drawn independently. Of a learned policy that is the training run, also when there is only one;

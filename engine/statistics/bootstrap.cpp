@@ -43,22 +43,6 @@ double studentized(const Studentized& resampled, double centre) {
 
 }  // namespace
 
-Studentized studentized_mean(std::span<const double> units) {
-  return {mean(units), standard_deviation(units) / std::sqrt(static_cast<double>(units.size()))};
-}
-
-Studentized studentized_iqm(std::span<const double> units) {
-  std::vector<double> order(units.begin(), units.end());
-  std::sort(order.begin(), order.end());
-  const std::size_t cut = order.size() / 4;
-  const std::size_t kept = order.size() - 2 * cut;
-  const double value = mean(std::span<const double>(order).subspan(cut, kept));
-  std::fill_n(order.begin(), cut, order[cut]);
-  std::fill_n(order.end() - static_cast<std::ptrdiff_t>(cut), cut, order[order.size() - 1 - cut]);
-  const double n = static_cast<double>(order.size()), h = static_cast<double>(kept);
-  return {value, standard_deviation(order) * std::sqrt((n - 1) / (h * (h - 1)))};
-}
-
 std::optional<Interval> bootstrap_interval(const std::vector<std::vector<double>>& runs, Unit unit,
                                            const Statistic& statistic, const Draws& draws, double confidence,
                                            int resamples) {

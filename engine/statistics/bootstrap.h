@@ -1,27 +1,14 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "engine/statistics/estimates.h"
+#include "engine/statistics/studentized.h"
 #include "engine/vocabulary/random.h"
 
 namespace coppice {
-
-/// A statistic of independent units with its standard error.
-struct Studentized {
-  double value = 0;
-  double error = 0;
-};
-using Statistic = std::function<Studentized(std::span<const double> units)>;
-
-/// Mean, error sd / sqrt(n).
-Studentized studentized_mean(std::span<const double> units);
-/// Interquartile mean, with the error of a trimmed mean: that of the winsorized values (Tukey and McLaughlin,
-/// Sankhya A 25, 1963).
-Studentized studentized_iqm(std::span<const double> units);
 
 /// Studentized bootstrap interval of a statistic (Efron and Tibshirani 1993, chapter 12). `unit` is what was
 /// drawn independently. With Unit::training_run, runs are drawn with replacement, then the episodes of each,

@@ -17,13 +17,44 @@ std::optional<Interval> t_interval(std::span<const double> values, double confid
   return Interval{centre - half, centre + half};
 }
 
+namespace {
+
+/// The mean of a Poisson variable that reaches k with probability p.
+double poisson_mean(int k, double p) {
+  double low = 0, high = k;  // p is small: the mean is below k
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    double term = elementary::exp(-middle), below = 0;
+    for (int j = 0; j < k; ++j) {
+      below += term;
+      term *= middle / (j + 1);
+    }
+    (1 - below < p ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// How many cases of n are `share`, when they are few enough for a Poisson limit; else 0.
+int few_cases(double share, double n) {
+  const double cases = std::round(share * n);
+  const bool whole = std::fabs(share * n - cases) < 1e-6;
+  return whole && cases >= 1 && cases <= (n <= 50 ? 2 : 3) && 2 * cases <= n ? static_cast<int>(cases) : 0;
+}
+
+}  // namespace
+
 Interval share_interval(double share, double n, double confidence) {
   const double z = normal_quantile(0.5 + confidence / 2);
   const double scale = 1 + z * z / n;
   const double center = (share + z * z / (2 * n)) / scale;
   const double half = z * std::sqrt(share * (1 - share) / n + z * z / (4 * n * n)) / scale;
   // At the ends they are 0 and 1; rounding must not move them.
-  return {share <= 0 ? 0 : std::fmax(0, center - half), share >= 1 ? 1 : std::fmin(1, center + half)};
+  Interval interval{share <= 0 ? 0 : std::fmax(0, center - half),
+                    share >= 1 ? 1 : std::fmin(1, center + half)};
+  if (const int cases = few_cases(share, n)) interval.low = poisson_mean(cases, 1 - confidence) / n;
+  if (const int others = few_cases(1 - share, n))
+    interval.high = 1 - poisson_mean(others, 1 - confidence) / n;
+  return interval;
 }
 
 }  // namespace coppice

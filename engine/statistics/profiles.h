@@ -11,7 +11,7 @@ namespace coppice {
 struct ProfilePoint {
   double threshold = 0;
   double share = 0;  ///< of the units that are better than the threshold
-  Interval ci95;     ///< of that share, for this threshold alone (Wilson)
+  Interval ci95;     ///< of that share, for this threshold alone
 };
 
 /// The performance profile of units (Agarwal et al., NeurIPS 2021: run-score distribution), at increasing

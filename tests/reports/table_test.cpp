@@ -45,7 +45,9 @@ class TableTest : public ::testing::Test {
   }
   /// Makes the table and returns it.
   Table made(Attributes attributes = {}) {
-    attributes.insert(attributes.begin(), {{"id", "t"}, {"of", "scores"}, {"rows", "policy"}});
+    const bool given = !attributes.empty() && attributes.front().first == "rows";
+    if (!given) attributes.insert(attributes.begin(), {"rows", "policy"});
+    attributes.insert(attributes.begin(), {{"id", "t"}, {"of", "scores"}});
     const Sub<Node> node = make_node(element("table", attributes));
     node->check(context);
     node->run(context);
@@ -129,7 +131,7 @@ TEST_F(TableTest, WarnsOfSmallAndSkewedSamples) {
   const auto caution = [&](std::size_t row) { return cell_text(table.rows[row][table.column("caution")]); };
   EXPECT_THAT(caution(0), HasSubstr("only 2 training runs"));
   EXPECT_THAT(caution(1), HasSubstr("skewness 2")) << "of costs, that is minus the returns";
-  EXPECT_EQ(caution(2), "");
+  EXPECT_EQ(caution(2), "") << "40 symmetric values";
 }
 
 TEST_F(TableTest, GivesTheGapToTheReferenceAndTheIntervalOfTheInterquartileMean) {
@@ -148,6 +150,29 @@ TEST_F(TableTest, GivesTheGapToTheReferenceAndTheIntervalOfTheInterquartileMean)
   EXPECT_LT(value(table, 0, "iqm_ci95_low"), value(table, 0, "iqm"));
   EXPECT_GT(value(table, 0, "iqm_ci95_high"), value(table, 0, "iqm"));
   EXPECT_TRUE(std::isnan(value(made(), 0, "optimality_gap"))) << "without a reference there is none";
+}
+
+TEST_F(TableTest, BootstrapsRunsAndTheirEpisodesWhenAsked) {
+  std::vector<Evaluation> runs;
+  for (int r = 0; r < 12; ++r) runs.push_back({"fpf", r, -1.0 - 0.5 * (r % 5), 1, 3});
+  give(runs);
+  const Table plain = made();
+  const Table of_runs = made({{"interval", "bootstrap"}});
+  EXPECT_EQ(value(of_runs, 0, "mean"), value(plain, 0, "mean"));
+  EXPECT_NE(value(of_runs, 0, "ci95_low"), value(plain, 0, "ci95_low"));
+  EXPECT_NEAR(value(of_runs, 0, "ci95_low"), value(plain, 0, "ci95_low"), 0.15);
+  EXPECT_NEAR(value(of_runs, 0, "ci95_high"), value(plain, 0, "ci95_high"), 0.15);
+  // The same means, of episodes that were kept: these are drawn again, too.
+  for (const InputNode& node : context.given["of"]) {
+    const double mean = number(read_table(node.folder / kEvaluationFile).rows[0][1]);
+    write_file(node.folder / kReturnsFile, "scenario,return\n0," + cell_text(mean - 2) + "\n1," +
+                                               cell_text(mean) + "\n2," + cell_text(mean + 2) + "\n");
+  }
+  const Table nested = made({{"interval", "bootstrap"}});
+  EXPECT_NE(value(nested, 0, "ci95_low"), value(of_runs, 0, "ci95_low"));
+  EXPECT_NEAR(value(nested, 0, "ci95_low"), value(plain, 0, "ci95_low"), 0.15);
+  context.given["of"].resize(9);
+  EXPECT_TRUE(std::isnan(value(made({{"interval", "bootstrap"}}), 0, "ci95_low"))) << "too few runs";
 }
 
 TEST_F(TableTest, KnowsWhichEndIsGood) {
@@ -179,6 +204,16 @@ TEST_F(TableTest, PutsPublishedAndReferenceValuesBeside) {
   EXPECT_EQ(value(made({{"reference_file", everywhere}}), 1, "reference"), 2);
 }
 
+TEST_F(TableTest, FindsKnownValuesByKeysThatHaveTheNameOfAColumnOfTheirFile) {
+  give({{"fpf", 0, -1}, {"fpf", 0, -2}});
+  context.given["of"][0].labels = {{"value", "1"}, {"source", "a"}};
+  context.given["of"][1].labels = {{"value", "2"}, {"source", "b"}};
+  const std::string published = file("published.csv", "sweep_value,sweep_source,value\n2,b,20\n1,a,10\n");
+  const Table table = made({{"rows", "value, source"}, {"published", published}});
+  EXPECT_EQ(value(table, 0, "published"), 10);
+  EXPECT_EQ(value(table, 1, "published"), 20);
+}
+
 TEST_F(TableTest, SaysWhatIsWrongWithKnownValues) {
   give({{"fpf", 0, -1}});
   const auto error = [&](const std::string& csv) {
@@ -193,6 +228,13 @@ TEST_F(TableTest, SaysWhatIsWrongWithKnownValues) {
               AllOf(HasSubstr("known.csv:3:7"), HasSubstr("'value': 'abc' is not a finite number")));
   EXPECT_THAT(error("value,note\n1,\n2,\n"),
               AllOf(HasSubstr("known.csv: its 2 rows have no key"), HasSubstr("add a column policy")));
+  context.given["of"][0].labels = {{"note", "7"}, {"policy", "fpf"}};
+  const auto of_note = [&](const std::string& csv) {
+    return error_of([&] { made({{"columns", "note"}, {"published", file("known.csv", csv)}}); });
+  };
+  EXPECT_THAT(of_note("note,value\n7,1\n"),
+              HasSubstr("'note' is a remark here; the key 'note' is called 'sweep_note' in this file"));
+  EXPECT_EQ(of_note("sweep_note,note,value\n7,as printed,1\n"), "");
   EXPECT_THAT(error_of([&] {
                 made({{"reference", "1"}, {"reference_file", file("r.csv", "value\n1\n")}});
               }),

@@ -12,20 +12,6 @@ using Values = std::vector<double>;
 
 const Values kValues = {3.1, 4.7, 2.2, 8.9, 5.5, 4.1, 6.3, 2.8, 7.7, 5.0, 3.9, 4.4};
 
-// The self-awareness times of Wilcox (Introduction to Robust Estimation and Hypothesis Testing, 2012, 3.3.2).
-TEST(StudentizedIqm, HasTheErrorOfATrimmedMean) {
-  const Values times = {77,  87,  88,  114, 151, 210, 219, 246,  253, 262,
-                        296, 299, 306, 376, 428, 515, 666, 1310, 2611};
-  const Studentized iqm = studentized_iqm(times);
-  // 4 of 19 are cut at each end; 11 are kept, from 151 to 428.
-  EXPECT_NEAR(iqm.value, (151 + 210 + 219 + 246 + 253 + 262 + 296 + 299 + 306 + 376 + 428) / 11.0, 1e-12);
-  Values winsorized(4, 151);
-  winsorized.insert(winsorized.end(), times.begin() + 4, times.begin() + 15);
-  winsorized.insert(winsorized.end(), 4, 428);
-  const double sd = standard_deviation(winsorized);
-  EXPECT_NEAR(iqm.error, sd * std::sqrt(18.0 / (11 * 10)), 1e-12);
-}
-
 TEST(BootstrapInterval, IsDecidedByItsDraws) {
   const Draws draws(1, "bootstrap", 0);
   const Interval a = *bootstrap_interval(kValues, studentized_mean, draws);

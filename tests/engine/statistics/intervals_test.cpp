@@ -47,17 +47,29 @@ TEST(TInterval, CoversTheMeanAsOftenAsItSays) {
   }
 }
 
-// Newcombe, Statistics in Medicine 17 (1998), Table I, method 3: 81 of 263, 15 of 148, 0 of 20, 1 of 29.
+// Newcombe, Statistics in Medicine 17 (1998), Table I, method 3: 81 of 263, 15 of 148, 0 of 20, 1 of 29 (its
+// lower limit there is Wilson's, 0.0061).
 TEST(ShareInterval, AgreesWithNewcombesTable) {
   const struct {
     double count, n, low, high;
   } rows[] = {
-      {81, 263, 0.2553, 0.3662}, {15, 148, 0.0624, 0.1605}, {0, 20, 0, 0.1611}, {1, 29, 0.0061, 0.1718}};
+      {81, 263, 0.2553, 0.3662}, {15, 148, 0.0624, 0.1605}, {0, 20, 0, 0.1611}, {1, 29, 0.0513 / 29, 0.1718}};
   for (const auto& row : rows) {
     const Interval interval = share_interval(row.count / row.n, row.n);
     EXPECT_NEAR(interval.low, row.low, 5e-5) << row.n;
     EXPECT_NEAR(interval.high, row.high, 5e-5) << row.n;
   }
+}
+
+// Half the 5 % quantiles of chi-squared with 2, 4 and 6 degrees of freedom: 0.0512933, 0.3553615, 0.8176914.
+TEST(ShareInterval, OfFewCasesHasAPoissonLimit) {
+  EXPECT_NEAR(share_interval(0.1, 10).low, 0.00512933, 1e-8);
+  EXPECT_NEAR(share_interval(0.2, 10).low, 0.03553615, 1e-8);
+  EXPECT_NEAR(share_interval(0.9, 10).high, 1 - 0.00512933, 1e-8);
+  EXPECT_NEAR(share_interval(0.03, 100).low, 0.008176914, 1e-8);
+  EXPECT_NEAR(share_interval(3.0 / 20, 20).low, 0.0524, 5e-5) << "Wilson's";
+  EXPECT_NEAR(share_interval(0.15, 10).low, 0.0354, 5e-5) << "Wilson's: a tie counts half";
+  EXPECT_GT(share_interval(1, 2).low, 0.3) << "two of two are not few";
 }
 
 TEST(ShareInterval, EndsExactlyAtNoneAndAll) {
