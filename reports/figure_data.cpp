@@ -82,12 +82,18 @@ std::vector<CurvePoint> mean_curve(const std::vector<Curve>& curves, std::size_t
 }
 
 std::vector<double> bin_ends(const std::vector<double>& values, std::size_t bins) {
-  const double low = quantile(values, 0), high = quantile(values, 1);
+  double low = quantile(values, 0), high = quantile(values, 1);
   if (bins == 0) {
     const double width =
         2 * (quantile(values, 0.75) - quantile(values, 0.25)) / std::cbrt(static_cast<double>(values.size()));
     const double wanted = width > 0 ? std::ceil((high - low) / width) : 10;
     bins = static_cast<std::size_t>(std::clamp(wanted, 1.0, 100.0));
+    if (std::all_of(values.begin(), values.end(), [](double value) { return value == std::trunc(value); })) {
+      const double whole = std::max(1.0, std::round((high - low + 1) / static_cast<double>(bins)));
+      bins = static_cast<std::size_t>(std::ceil((high - low + 1) / whole));
+      low -= 0.5;
+      high = low + whole * static_cast<double>(bins);
+    }
   }
   std::vector<double> ends;
   const double span = high > low ? high - low : 1, start = high > low ? low : low - 0.5;

@@ -29,8 +29,9 @@ struct CurvePoint {
 /// At all their x, or (`points` > 0) at so many evenly spaced ones, from where all have begun to the last.
 std::vector<CurvePoint> mean_curve(const std::vector<Curve>& curves, std::size_t points);
 
-/// The ends of equally wide bins for all values: the Freedman-Diaconis rule, at most 100; `bins` when
-/// positive.
+/// The ends of equally wide bins for all values: `bins` from the least to the largest when positive, else by
+/// the Freedman-Diaconis rule, hardly more than 100; whole numbers then have bins of a whole width with ends
+/// between them.
 std::vector<double> bin_ends(const std::vector<double>& values, std::size_t bins);
 
 }  // namespace coppice

@@ -1,5 +1,8 @@
 #include "reports/vega_lite.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace coppice {
@@ -37,25 +40,49 @@ Json quantitative(const std::string& field, const std::string& title) {
   return made;
 }
 
-/// Colour, dashes, rows of small figures; of more than that only the lines are kept apart.
-Json grouping(const std::vector<std::string>& by, std::size_t from, bool dashes) {
-  Json encoding = Json::object();
-  std::vector<const char*> channels = {"color"};
-  if (dashes) channels.push_back("strokeDash");
-  std::size_t next = 0;
-  for (std::size_t i = from; i < by.size(); ++i) {
-    if (next < channels.size()) {
-      encoding[channels[next++]] = channel(by[i], "nominal");
+/// Tells apart by the given channels, then in rows and columns of small figures; of more than that only the
+/// marks are kept apart.
+void group(Json& figure, const std::vector<std::string>& by, const std::vector<const char*>& channels) {
+  constexpr std::array<const char*, 2> kFacets = {"row", "column"};
+  figure["encoding"] = Json::object();
+  for (std::size_t i = 0; i < by.size(); ++i) {
+    const Json named = channel(by[i], "nominal");
+    if (i < channels.size()) {
+      figure["encoding"][channels[i]] = named;
+    } else if (i < channels.size() + kFacets.size()) {
+      figure["facet"][kFacets[i - channels.size()]] = named;
     } else {
-      encoding["detail"].push_back(channel(by[i], "nominal"));
+      figure["encoding"]["detail"].push_back(named);
     }
   }
-  return encoding;
+}
+
+/// What is drawn once in each small figure goes into its specification.
+void move_into_facets(Json& figure) {
+  if (!figure.contains("facet")) return;
+  for (const char* part : {"encoding", "mark", "layer"}) {
+    if (!figure.contains(part)) continue;
+    figure["spec"][part] = std::move(figure[part]);
+    figure.erase(part);
+  }
+}
+
+/// The layer of intervals, if there are any, below that of means.
+Json layers(const Table& table, Json intervals, Json means) {
+  const std::size_t low = table.column("ci95_low");
+  const bool any = std::any_of(table.rows.begin(), table.rows.end(),
+                               [&](const std::vector<Cell>& row) { return !std::isnan(number(row[low])); });
+  return any ? Json::array({std::move(intervals), std::move(means)}) : Json::array({std::move(means)});
 }
 
 void draw_line(Json& figure, const Table& table, const FigureLayout& layout, const std::string& x,
                const std::string& mean, const char* shape) {
-  figure["encoding"] = grouping(layout.by, 0, true);
+  group(figure, layout.by, {"color", "strokeDash"});
+  Json dash;  // an area has none, but must be one for each line
+  if (layout.by.size() > 1) {
+    dash = figure["encoding"]["strokeDash"];
+    figure["encoding"].erase("strokeDash");
+  }
   figure["encoding"]["x"] = quantitative(x, x == "threshold" ? layout.y : x);
   if (table.columns[table.column(x)].type == ColumnInfo::Type::text) {
     figure["encoding"]["x"] = channel(x, "nominal");
@@ -64,27 +91,31 @@ void draw_line(Json& figure, const Table& table, const FigureLayout& layout, con
   Json band = {{"mark", {{"type", "area"}, {"opacity", 0.2}, {"interpolate", shape}}}};
   band["encoding"]["y"] = quantitative("ci95_low", title);
   band["encoding"]["y2"] = {{"field", "ci95_high"}};
+  if (!dash.is_null()) {
+    band["encoding"]["detail"] = figure["encoding"].value("detail", Json::array());
+    band["encoding"]["detail"].push_back(dash);
+  }
   Json line = {{"mark", {{"type", "line"}, {"interpolate", shape}}}};
+  if (layout.points) line["mark"]["point"] = true;
   line["encoding"]["y"] = quantitative(mean, title);
-  figure["layer"] = {std::move(band), std::move(line)};
+  if (!dash.is_null()) line["encoding"]["strokeDash"] = dash;
+  figure["layer"] = layers(table, std::move(band), std::move(line));
 }
 
-void draw_intervals(Json& figure, const FigureLayout& layout) {
-  figure["encoding"] = grouping(layout.by, 1, false);
-  if (!layout.by.empty()) figure["encoding"]["y"] = channel(layout.by.front(), "nominal");
+void draw_intervals(Json& figure, const Table& table, const FigureLayout& layout) {
+  group(figure, layout.by, {"y", "color"});
   if (layout.by.size() > 1) figure["encoding"]["yOffset"] = channel(layout.by[1], "nominal");
   Json rule = {{"mark", "rule"}};
   rule["encoding"]["x"] = quantitative("ci95_low", layout.y);
   rule["encoding"]["x2"] = {{"field", "ci95_high"}};
   Json point = {{"mark", {{"type", "point"}, {"filled", true}}}};
   point["encoding"]["x"] = quantitative("mean", layout.y);
-  figure["layer"] = {std::move(rule), std::move(point)};
+  figure["layer"] = layers(table, std::move(rule), std::move(point));
 }
 
 void draw_histogram(Json& figure, const FigureLayout& layout) {
   figure["mark"] = "bar";
-  figure["encoding"] = grouping(layout.by, 1, false);
-  if (!layout.by.empty()) figure["encoding"]["row"] = channel(layout.by.front(), "nominal");
+  group(figure, layout.by, {});
   figure["encoding"]["x"] = channel("bin_low", "quantitative", layout.y);
   figure["encoding"]["x"]["bin"] = {{"binned", true}};
   figure["encoding"]["x2"] = {{"field", "bin_high"}};
@@ -106,12 +137,13 @@ std::string vega_lite(const Table& table, const FigureLayout& layout) {
       draw_line(figure, table, layout, "threshold", "share", "step-after");
       break;
     case FigureKind::interval:
-      draw_intervals(figure, layout);
+      draw_intervals(figure, table, layout);
       break;
     case FigureKind::histogram:
       draw_histogram(figure, layout);
       break;
   }
+  move_into_facets(figure);
   figure["data"] = {{"values", values_of(table)}};
   return figure.dump(1) + "\n";
 }

@@ -11,8 +11,10 @@ enum class FigureKind { line, histogram, interval, profile };
 
 struct FigureLayout {
   FigureKind kind = FigureKind::line;
-  std::string x, y;             ///< column of a line's x; name of what is shown
-  std::vector<std::string> by;  ///< columns that tell apart: by colour, then dashes, then in rows
+  std::string x, y;  ///< column of a line's x; name of what is shown
+  std::vector<std::string>
+      by;               ///< columns that tell apart: first in one figure, then in rows and columns of them
+  bool points = false;  ///< a mark at each point of a line: there are few, perhaps only one
 };
 
 /// A Vega-Lite v5 specification with the data inside, as text.

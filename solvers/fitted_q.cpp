@@ -96,7 +96,8 @@ void FittedQ::iterate(Parallel& parallel) {
 std::vector<std::pair<std::string, double>> FittedQ::measures() const {
   double sum = 0;
   for (const double y : y_.values()) sum += y;
-  return {{"mean_target", sum / static_cast<double>(y_.rows())}, {"target_change", change_}};
+  const std::vector<std::string> names = measure_names();
+  return {{names[0], sum / static_cast<double>(y_.rows())}, {names[1], change_}};
 }
 
 void FittedQ::save(Archive& archive) const {

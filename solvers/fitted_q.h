@@ -62,6 +62,7 @@ class FittedQ {
   int iteration() const { return iteration_; }
   const MadeFunction& function() const { return function_; }
   std::vector<std::pair<std::string, double>> measures() const;
+  static std::vector<std::string> measure_names() { return {"mean_target", "target_change"}; }
   void save(Archive& archive) const;
   void load(Archive& archive);
 

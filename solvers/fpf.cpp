@@ -19,6 +19,9 @@ class Fpf : public Solver, public FittedQParameters {
                            {{.name = "leaves", .value = "pwl", .name_place = {}, .value_place = {}}}};
 
   Needs needs() const override { return {.samples = true, .single_action = true, .uses_value = true}; }
+  std::vector<std::string> measures(bool value_given) const override {
+    return value_given ? std::vector<std::string>() : FittedQ::measure_names();
+  }
   std::unique_ptr<Training> start(const TrainingInputs& inputs) const override;
 
   static Parameters<Fpf> parameters() {

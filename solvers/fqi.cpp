@@ -6,6 +6,7 @@ namespace {
 class Fqi : public Solver, public FittedQParameters {
  public:
   Needs needs() const override { return {.samples = true, .simulator = false, .single_action = true}; }
+  std::vector<std::string> measures(bool) const override { return FittedQ::measure_names(); }
   std::unique_ptr<Training> start(const TrainingInputs& inputs) const override;
   static Parameters<Fqi> parameters() { return declare<Fqi>(); }
 };

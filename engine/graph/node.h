@@ -45,7 +45,8 @@ struct InputNode {
   std::vector<std::string> streams;  ///< streams of draws it depends on ("collect 0"), its own first
   std::vector<std::string> makes;    ///< as Node::makes
   std::string training;  ///< key of the training run whose policy it is about; empty: nothing was learned
-  std::vector<std::string> columns;  ///< as Node::dataset_columns
+  std::vector<std::string> columns;           ///< as Node::dataset_columns
+  std::vector<std::string> progress_columns;  ///< as Node::progress_columns
 };
 
 /// What a node sees while it is checked and while it runs.
@@ -112,6 +113,8 @@ class Node : public NodeOptions {
   virtual std::string published_in() const { return {}; }
   /// Columns of the dataset that it makes, as far as they are known when planning; empty: unknown.
   virtual std::vector<std::string> dataset_columns(const NodeContext&) const { return {}; }
+  /// The same of its progress.
+  virtual std::vector<std::string> progress_columns(const NodeContext&) const { return {}; }
   /// Checks that need the inputs' elements. Throws std::invalid_argument or ConfigError; called when
   /// planning.
   virtual void check(const NodeContext&) const {}

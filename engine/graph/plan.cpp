@@ -40,6 +40,7 @@ void check_nodes(Plan& plan, Diagnostics& diagnostics) {
       const PlannedContext context(plan, i);
       node.node->check(context);
       node.columns = node.node->dataset_columns(context);
+      node.progress_columns = node.node->progress_columns(context);
     } catch (const ConfigError& error) {
       for (Diagnostic diagnostic : error.diagnostics()) {
         const Place& place = diagnostic.place.file ? diagnostic.place : node.place;

@@ -46,6 +46,7 @@ struct PlannedNode {
   std::string parameters_text;          ///< part of the key text that comes from `resolved`; see key.h
   std::string family;                   ///< hash of that part: equal for all replicates
   std::vector<std::string> columns;     ///< of the dataset it makes, where known; of the first replicate only
+  std::vector<std::string> progress_columns;  ///< of its progress, likewise
 };
 
 /// What a config asks for, before looking at any result. Everything that plan, why and run say comes from

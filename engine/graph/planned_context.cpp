@@ -25,6 +25,7 @@ InputNode input_node(const Plan& plan, const PlannedNode& node, const std::files
   input.makes = node.node->makes();
   if (node.training) input.training = plan.nodes[*node.training].key;
   input.columns = node.columns;
+  input.progress_columns = node.progress_columns;
   return input;
 }
 

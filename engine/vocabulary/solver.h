@@ -68,6 +68,9 @@ class Solver {
     bool uses_policy = false;    ///< takes a policy to begin with, when given
   };
   virtual Needs needs() const = 0;
+  /// Names of all the measures that its progress has, with or without TrainingInputs::value, so that a figure
+  /// of another one is refused before anything runs.
+  virtual std::vector<std::string> measures(bool /*value_given*/) const { return {}; }
   /// Throws std::invalid_argument when the inputs cannot be used.
   virtual std::unique_ptr<Training> start(const TrainingInputs& inputs) const = 0;
 };

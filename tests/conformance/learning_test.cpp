@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -104,6 +105,31 @@ TEST_P(Solvers, TrainToTheSameBytesOnThreadsAndAfterARestart) {
   const Spaces& spaces = samples.problem->spaces();
   first.policy.object->prepare(spaces, samples.problem->simulator());
   expect_survives_a_file(first.policy, spaces);
+}
+
+/// Names of the measures in the progress of a training, in order of appearance.
+std::vector<std::string> measured(const Solver& solver, const TrainingInputs& inputs) {
+  Serial serial;
+  const std::unique_ptr<Training> training = solver.start(inputs);
+  std::vector<std::string> names;
+  for (bool more = true; more;) {
+    more = training->advance(serial);
+    for (const auto& [name, value] : training->progress().measures) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  return names;
+}
+
+TEST_P(Solvers, SayBeforeTheyStartWhatTheyMeasure) {
+  const RandomSamples samples(kDraws);
+  const Sub<Solver> solver = make_example<Solver>(GetParam());
+  TrainingInputs inputs = samples.inputs();
+  EXPECT_EQ(solver->measures(false), measured(*solver, inputs)) << "Solver::measures";
+  if (!solver->needs().uses_value) return;
+  Serial serial;
+  inputs.value = train(*solver, inputs, serial).value;
+  EXPECT_EQ(solver->measures(true), measured(*solver, inputs)) << "Solver::measures, with a value function";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Solvers, testing::ValuesIn(Catalogue::instance().names("solver")),

@@ -93,6 +93,7 @@ TEST_F(FigureTest, DrawsEvaluationsOverASweep) {
   EXPECT_EQ(value(table, 0, "mean"), 11);
   EXPECT_EQ(value(table, 1, "mean"), 5);
   EXPECT_EQ(value(table, 1, "n"), 3);
+  EXPECT_EQ(drawing.at("layer").at(1).at("mark").at("point"), true) << "two points, or one, are no line";
 }
 
 TEST_F(FigureTest, CountsEveryRunOnceInAHistogram) {
@@ -104,7 +105,18 @@ TEST_F(FigureTest, CountsEveryRunOnceInAHistogram) {
   EXPECT_EQ(value(table, 0, "count"), 3);
   EXPECT_EQ(value(table, 1, "count"), 3);
   EXPECT_EQ(value(table, 2, "count"), 4) << "the last bin holds its end";
-  EXPECT_EQ(drawing.at("mark"), "bar");
+  EXPECT_EQ(drawing.at("spec").at("mark"), "bar");
+  EXPECT_EQ(drawing.at("facet").at("row").at("field"), "variant") << "one below the other";
+}
+
+TEST_F(FigureTest, GivesWholeNumbersBinsOfWholeWidth) {
+  for (int r = 0; r < 40; ++r) evaluation(r, "HA", -19 - r % 5);
+  const Table table = made({{"kind", "histogram"}, {"by", "variant"}});
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    EXPECT_EQ(value(table, row, "bin_low"), 18.5 + static_cast<double>(row));
+    EXPECT_EQ(value(table, row, "count"), 8);
+  }
+  EXPECT_EQ(table.rows.size(), 5u) << "19 to 23 steps";
 }
 
 TEST_F(FigureTest, ShowsIntervalsAndProfiles) {
@@ -128,6 +140,24 @@ TEST_F(FigureTest, TakesALearnedPolicyWithoutReplicatesAsOneRun) {
   EXPECT_EQ(value(made({{"kind", "histogram"}, {"bins", "1"}, {"by", "variant"}}), 0, "count"), 3);
 }
 
+TEST_F(FigureTest, KeepsTheBandsOfDashedLinesApart) {
+  evaluation(0, "HA", -1);
+  context.given["of"][0].labels = {{"a", "1"}, {"b", "2"}, {"c", "3"}, {"d", "4"}, {"e", "5"}, {"x", "6"}};
+  made({{"x", "x"}, {"by", "a, b, c, d, e"}});
+  EXPECT_EQ(drawing.at("facet").at("row").at("field"), "c");
+  EXPECT_EQ(drawing.at("facet").at("column").at("field"), "d");
+  EXPECT_EQ(drawing.at("spec").at("layer").size(), 1u) << "one run has no interval";
+  evaluation(1, "HA", -2);
+  context.given["of"][1].labels = context.given["of"][0].labels;
+  made({{"x", "x"}, {"by", "a, b, c, d, e"}});
+  const nlohmann::json& layers = drawing.at("spec").at("layer");
+  EXPECT_EQ(layers.at(1).at("encoding").at("strokeDash").at("field"), "b");
+  const nlohmann::json& band = layers.at(0).at("encoding");
+  EXPECT_FALSE(band.contains("strokeDash")) << "an area has none";
+  EXPECT_EQ(band.at("detail").at(0).at("field"), "e");
+  EXPECT_EQ(band.at("detail").at(1).at("field"), "b");
+}
+
 TEST_F(FigureTest, RenamesKeysThatHaveTheNameOfAnotherColumn) {
   evaluation(0, "HA", -1);
   context.given["of"][0].labels = {{"mean", "4"}, {"n", "7"}};
@@ -149,6 +179,23 @@ TEST_F(FigureTest, SaysWhatIsWrong) {
   context.given["of"].erase(context.given["of"].begin());
   EXPECT_THAT(error_of([&] { made({{"y", "csot"}}); }), HasSubstr("did you mean 'cost'"));
   EXPECT_THAT(error_of([&] { made({{"kind", "profile"}}); }), HasSubstr("evaluate what was learned"));
+  EXPECT_THAT(error_of([&] { made({{"x", "ci95_low"}}); }), HasSubstr("has a column 'ci95_low' of its own"));
+}
+
+TEST_F(FigureTest, KnowsWhenPlannedWhichColumnsProgressWillHave) {
+  learning(0, "1,2\n", 1);
+  context.given["of"][0].progress_columns = {"iteration", "cost", "spread"};
+  const auto error = [&](Attributes attributes) {
+    attributes.insert(attributes.begin(), {{"id", "f"}, {"of", "n"}});
+    return error_of([&] { make_node(element("figure", attributes))->check(context); });
+  };
+  EXPECT_EQ(error({}), "") << "y is cost";
+  EXPECT_EQ(error({{"y", "spread"}, {"x", "cpu_s"}}), "");
+  EXPECT_EQ(error({{"y", "spead"}}), "y: the progress of 'n' has no column 'spead'; did you mean 'spread'?");
+  EXPECT_EQ(error({{"x", "iteratoin"}}),
+            "x: the progress of 'n' has no column 'iteratoin'; did you mean 'iteration'?");
+  context.given["of"][0].progress_columns.clear();
+  EXPECT_EQ(error({{"y", "spead"}}), "") << "nothing is known, so it is found when the figure is made";
 }
 
 }  // namespace

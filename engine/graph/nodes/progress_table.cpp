@@ -7,6 +7,7 @@
 namespace coppice {
 namespace {
 
+constexpr const char* kIteration = "iteration";
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -27,7 +28,7 @@ void ProgressTable::add(const TrainingProgress& progress) {
 
 Table ProgressTable::table() const {
   Table table;
-  table.columns.push_back({"iteration", ColumnInfo::Type::integer, "", "Units of work done."});
+  table.columns.push_back({kIteration, ColumnInfo::Type::integer, "", "Units of work done."});
   for (const std::string& measure : measures_) {
     table.columns.push_back(
         {measure, ColumnInfo::Type::number, "", "As the solver measured it in this unit."});
@@ -38,6 +39,12 @@ Table ProgressTable::table() const {
     for (const std::vector<double>& values : values_) cells.emplace_back(values[row]);
   }
   return table;
+}
+
+std::vector<std::string> ProgressTable::column_names(const std::vector<std::string>& measures) {
+  std::vector<std::string> names = {kIteration};
+  names.insert(names.end(), measures.begin(), measures.end());
+  return names;
 }
 
 void ProgressTable::save(Archive& archive) const {

@@ -15,6 +15,8 @@ class ProgressTable {
  public:
   void add(const TrainingProgress& progress);
   Table table() const;
+  /// The names of its columns, when these are the measures.
+  static std::vector<std::string> column_names(const std::vector<std::string>& measures);
 
   void save(Archive& archive) const;
   void load(Archive& archive);  ///< throws std::runtime_error for arrays that save did not write

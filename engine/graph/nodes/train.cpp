@@ -83,6 +83,10 @@ struct TrainNode : Node {
   bool gathers_replicates(std::string_view parameter) const override { return parameter == "samples"; }
   std::vector<std::string> labelled_tables() const override { return {std::string(kProgressFile)}; }
 
+  std::vector<std::string> progress_columns(const NodeContext&) const override {
+    return ProgressTable::column_names(solver->measures(!value.id.empty()));
+  }
+
   void check(const NodeContext& context) const override {
     const auto target = load_problem(context.inputs("problem").front());
     check_needs(*target);

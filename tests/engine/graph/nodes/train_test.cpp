@@ -56,6 +56,7 @@ struct FakeSolver : Solver {
   bool samples = false, simulator = false, single_action = false, value = false, policy = false;
 
   Needs needs() const override { return {samples, simulator, single_action, value, policy}; }
+  std::vector<std::string> measures(bool) const override { return {"sum", "even"}; }
   std::unique_ptr<Training> start(const TrainingInputs& inputs) const override {
     return std::make_unique<FakeTraining>(units, inputs);
   }
@@ -111,6 +112,9 @@ TEST(Train, WritesThePolicyAndARowForEachUnitOfWork) {
   const Table progress = read_table(context.folder() / kProgressFile);
   ASSERT_EQ(progress.rows.size(), 6u);
   ASSERT_EQ(progress.columns.size(), 3u);
+  const std::vector<std::string> planned = node->progress_columns(context);
+  ASSERT_EQ(planned.size(), 3u);
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(progress.columns[c].name, planned[c]);
   for (int i = 0; i < 6; ++i) EXPECT_EQ(number(progress.rows[static_cast<std::size_t>(i)][0]), i + 1);
   EXPECT_EQ(cell_text(progress.rows[0][progress.column("even")]), "") << "that unit did not measure it";
   EXPECT_EQ(number(progress.rows[1][progress.column("even")]), 2);

@@ -1,0 +1,34 @@
+#!/bin/sh
+# Draws the figures of the shipped configs, at the smallest scale, and one of every kind with the Vega-Lite that
+# package-lock.json pins.
+#   vega_lite_test.sh RUNNER WORK_FOLDER
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+runner=$1
+work=$2
+mkdir -p "$work"
+
+# Packages stay installed while the lock file is the same; then no network is needed.
+if ! cmp -s "$here/package-lock.json" "$work/installed.json"; then
+  rm -f "$work/installed.json"
+  cp "$here/package.json" "$here/package-lock.json" "$work/"
+  (cd "$work" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error)
+  cp "$here/package-lock.json" "$work/installed.json"
+fi
+cp "$here/check.mjs" "$work/"
+
+rm -rf "$work/out"
+"$runner" "$here/figures.xml" --out "$work/out" --progress none
+for config in $(grep -rl --include='*.xml' '<figure' "$root/configs"); do
+  scale=""
+  if grep -q 'scale.xml\|name="scale"' "$config"; then scale="scale:=ci"; fi
+  "$runner" "$config" $scale --out "$work/out" --progress none
+done
+set --
+for experiment in "$work"/out/*/figures; do
+  for figure in "$experiment"/*.vl.json; do
+    if [ -e "$figure" ]; then set -- "$@" "$experiment"; break; fi
+  done
+done
+node "$work/check.mjs" "$@"
