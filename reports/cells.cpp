@@ -103,8 +103,17 @@ Cell key_cell(const std::string& text, ColumnInfo::Type type) {
 std::vector<Entry> entries_of(const std::vector<InputNode>& nodes) {
   std::vector<Entry> entries;
   for (const InputNode& node : nodes) {
-    entries.push_back({node.labels, node.replicate});
-    entries.back().names.emplace_back("node", node.id);
+    std::vector<PointValue> names = node.labels;
+    names.emplace_back("node", node.id);
+    for (std::size_t i = 0; i < node.point.size() && i < names.size(); ++i) {
+      const auto taken = [&](const PointValue& later) {
+        return later.first == names[i].first && later.second != names[i].second;
+      };
+      if (std::any_of(names.begin() + static_cast<std::ptrdiff_t>(i) + 1, names.end(), taken)) {
+        names[i].first = kRenamed + names[i].first;
+      }
+    }
+    entries.push_back({std::move(names), node.replicate});
   }
   return entries;
 }

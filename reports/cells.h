@@ -13,7 +13,9 @@ namespace coppice {
 
 /// A node as a table names it.
 struct Entry {
-  std::vector<PointValue> names;  ///< its labels, then "node", its id
+  /// Its labels, then "node", its id. A sweep column that has the name of another one, with another value, is
+  /// called sweep_<name>, as in evaluations.
+  std::vector<PointValue> names;
   std::optional<int> replicate;
 };
 std::vector<Entry> entries_of(const std::vector<InputNode>& nodes);

@@ -11,15 +11,31 @@
 
 namespace coppice {
 
+namespace {
+
+/// The name that a key has in the file, whose own columns are value, source and note.
+std::string column_of(const std::string& key) {
+  return key == "value" || key == "source" || key == "note" ? "sweep_" + key : key;
+}
+
+}  // namespace
+
 KnownValues::KnownValues(const std::string& file, const TableKeys& keys, const std::vector<TableCell>& cells)
     : table_(read_table(file, {"value"})) {
-  const std::vector<std::string> names = keys.all();
+  std::vector<std::string> names;
+  for (const std::string& key : keys.all()) names.push_back(column_of(key));
   std::vector<std::string> valid = names;
   valid.insert(valid.end(), {"value", "source", "note"});
   for (const ColumnInfo& column : table_.columns) {
     if (std::find(valid.begin(), valid.end(), column.name) != valid.end()) continue;
     throw ConfigError(fmt::format("{}: '{}' is no key of the table; {}", file, column.name,
                                   suggestion(column.name, valid)));
+  }
+  for (const std::string& key : keys.all()) {
+    const bool taken = key != column_of(key) && key != "value";
+    if (!taken || !table_.has(key) || table_.has(column_of(key))) continue;
+    throw ConfigError(fmt::format("{}: '{}' is a remark here; the key '{}' is called '{}' in this file", file,
+                                  key, key, column_of(key)));
   }
   if (!table_.has("value")) throw ConfigError(fmt::format("{}: there is no column 'value'", file));
   for (const std::string& name : names) {

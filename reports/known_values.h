@@ -11,6 +11,7 @@ namespace coppice {
 
 /// Values known from elsewhere, for cells of a table: a CSV file with the column "value" and some of the
 /// table's key columns (a key that it leaves out does not matter); columns "source" and "note" may say more.
+/// A key that has one of these three names is called sweep_<name>.
 class KnownValues {
  public:
   KnownValues() = default;  ///< knows nothing

@@ -44,6 +44,7 @@ struct TimingsNode : Node {
     const std::vector<TableCell> cells = arrange(entries_of(nodes), keys);
     using Type = ColumnInfo::Type;
     Table table;
+    table.reproducible = false;
     add_key_columns(table, keys, cells);
     table.columns.push_back({"n", Type::integer, "", "Nodes measured."});
     table.columns.push_back({"mean_s", Type::number, "s", fmt::format("Mean {}.", doc_of_value())});
@@ -103,7 +104,8 @@ struct TimingsNode : Node {
   }
 };
 
-const Component<Node, TimingsNode> kComponent("timings", "Show what nodes cost in time.", "no publication");
+const Component<Node, TimingsNode> kComponent("timings", "Show what nodes cost in time.", "no publication",
+                                              2);
 
 }  // namespace
 }  // namespace coppice

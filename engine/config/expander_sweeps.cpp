@@ -9,6 +9,8 @@
 namespace coppice::config {
 namespace {
 
+constexpr const char* kRenamed = "sweep_";
+
 /// Checks the attributes and children of a sweep whose conditions, groups, calls and includes are worked out.
 void check_parts(const Element& element, std::string_view parent, Diagnostics& diagnostics) {
   const ControlElement* declaration = find_control(element.name, parent);
@@ -93,6 +95,11 @@ void Expander::fill(DefinedSweep& sweep, const Element& plain, const std::vector
 void Expander::check_columns(const DefinedSweep& sweep, const Context& context) {
   for (const std::string& column : sweep.rows.columns) {
     evaluator_.add_column(column, sweep.points.id);
+    if (column.starts_with(kRenamed)) {
+      error(sweep.points.place, context,
+            fmt::format("the column '{}' of sweep '{}' begins with '{}'", column, sweep.points.id, kRenamed),
+            "tables call a column so that has the name of one of theirs");
+    }
     const Definition* definition = global_->find_here(column);
     if (definition == nullptr) continue;
     const Place& place = definition->place;

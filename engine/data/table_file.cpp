@@ -153,8 +153,18 @@ std::string cell_text(const Cell& cell) {
   return text;
 }
 
-void write_schema(const std::filesystem::path& table, const std::vector<ColumnInfo>& columns) {
+bool is_reproducible(const std::filesystem::path& table) {
+  const std::filesystem::path schema = schema_path(table);
+  std::error_code code;
+  if (!std::filesystem::exists(schema, code)) return true;
+  const nlohmann::json root = nlohmann::json::parse(read_file(schema), nullptr, false);
+  return !root.is_object() || root.value("reproducible", nlohmann::json(true)) != false;
+}
+
+void write_schema(const std::filesystem::path& table, const std::vector<ColumnInfo>& columns,
+                  bool reproducible) {
   nlohmann::ordered_json root;
+  if (!reproducible) root["reproducible"] = false;
   root["columns"] = nlohmann::ordered_json::array();
   for (const ColumnInfo& column : columns) {
     root["columns"].push_back({{"name", column.name},
@@ -184,7 +194,7 @@ void write_table(const std::filesystem::path& file, const Table& table) {
     bytes += '\n';
   }
   write_file(file, bytes);
-  write_schema(file, table.columns);
+  write_schema(file, table.columns, table.reproducible);
 }
 
 Table read_table(const std::filesystem::path& file, const std::vector<std::string>& numbers) {
@@ -192,6 +202,7 @@ Table read_table(const std::filesystem::path& file, const std::vector<std::strin
   CsvReader reader(source);
   const std::filesystem::path schema = schema_path(file);
   Table table;
+  table.reproducible = is_reproducible(file);
   table.columns =
       std::filesystem::exists(schema) ? described_columns(schema, reader) : inferred_columns(source);
   for (ColumnInfo& column : table.columns) {

@@ -25,6 +25,7 @@ using Cell = std::variant<std::monostate, double, std::int64_t, std::string>;
 struct Table {
   std::vector<ColumnInfo> columns;
   std::vector<std::vector<Cell>> rows;
+  bool reproducible = true;  ///< false: shows times, which differ from run to run
 
   std::size_t column(std::string_view name) const;  ///< throws std::out_of_range naming what there is
   bool has(std::string_view name) const;
@@ -36,7 +37,8 @@ double number(const Cell& cell);
 std::string cell_text(const Cell& cell);
 
 /// RFC 4180 quoting, LF, UTF-8, header row; beside it <name>.schema.json (name, type, unit, doc of each
-/// column). Throws std::runtime_error with the file and the system's reason when it cannot be written.
+/// column; "reproducible": false where it is not). Throws std::runtime_error with the file and the system's
+/// reason when it cannot be written.
 void write_table(const std::filesystem::path& file, const Table& table);
 
 /// Reads any CSV (LF or CRLF). Types come from the schema beside it, else from the cells; a boolean is 0
@@ -45,6 +47,9 @@ void write_table(const std::filesystem::path& file, const Table& table);
 Table read_table(const std::filesystem::path& file, const std::vector<std::string>& numbers = {});
 
 /// <name>.schema.json beside <name>.csv: {"columns": [{"name", "type", "unit", "doc"}, ...]}.
-void write_schema(const std::filesystem::path& table, const std::vector<ColumnInfo>& columns);
+void write_schema(const std::filesystem::path& table, const std::vector<ColumnInfo>& columns,
+                  bool reproducible = true);
+/// False when the schema beside a table says that its content differs from run to run.
+bool is_reproducible(const std::filesystem::path& table);
 
 }  // namespace coppice

@@ -16,19 +16,25 @@ namespace fs = std::filesystem;
 using Row = std::vector<std::string>;
 using Rows = std::map<Row, std::pair<Row, Summary>>;  ///< by keys: all cells, and what they say
 
-/// Times differ from run to run; figures/ holds what is drawn from them.
-bool is_reproducible(const fs::path& path) {
-  const std::string top = path.begin()->string();
-  return (top == "nodes" || top == "tables") && !path.filename().string().starts_with("timing.");
+/// A figure of times, which differ from run to run: its table says so.
+bool is_figure_of_times(const fs::path& file) {
+  const std::string name = file.filename().string();
+  for (const std::string_view kind : {".csv", ".vl.json"}) {
+    if (!name.ends_with(kind)) continue;
+    return !is_reproducible(file.parent_path() / (name.substr(0, name.size() - kind.size()) + ".csv"));
+  }
+  return false;
 }
 
 std::set<std::string> result_files(const fs::path& folder) {
   std::set<std::string> files;
-  for (const char* top : {"nodes", "tables"}) {
-    std::error_code code;  // a run may have neither
+  for (const char* top : {"nodes", "tables", "figures"}) {
+    std::error_code code;  // a run need not have them
     for (fs::recursive_directory_iterator i(folder / top, code), end; i != end; i.increment(code)) {
-      const fs::path path = i->path().lexically_relative(folder);
-      if (i->is_regular_file() && is_reproducible(path)) files.insert(path.string());
+      const bool times = top == std::string_view("figures")
+                             ? is_figure_of_times(i->path())
+                             : i->path().filename().string().starts_with("timing.");
+      if (i->is_regular_file() && !times) files.insert(i->path().lexically_relative(folder).string());
     }
   }
   return files;

@@ -75,6 +75,23 @@ TEST_F(Diff, NoticesAChangedByte) {
   EXPECT_EQ(ended.out, "small: 1 of 12 result files differ\n");
 }
 
+TEST_F(Diff, ComparesFiguresExceptThoseOfTimes) {
+  const std::string xml = TemporaryFolder::read(folder_ / "small.xml");
+  const std::size_t end = xml.find("</experiment>");
+  folder_.write("small.xml", xml.substr(0, end) +
+                                 R"(<figure id="spread" of="scores" kind="interval" by="policy"/>
+  <timings id="speed" of="scores" rows="policy"/></experiment>)");
+  ASSERT_EQ(run("small.xml --out one").status, 0);
+  ASSERT_EQ(run("small.xml --out again -j 1").status, 0);
+  const Ended same = run("diff one again");  // 12 and spread's three, and what speed's columns are
+  EXPECT_EQ(same.out, "small: 16 result files, all equal\n");
+  ASSERT_EQ(run("small.xml --out again --seed 4").status, 0);
+  const std::string differing = run("diff one again --files").out;
+  EXPECT_TRUE(contains(differing, "figures/spread.csv differs\n")) << differing;
+  EXPECT_TRUE(contains(differing, "figures/spread.vl.json differs\n")) << differing;
+  EXPECT_FALSE(contains(differing, "figures/speed")) << differing;
+}
+
 TEST_F(Diff, RefusesFoldersWithoutRuns) {
   EXPECT_EQ(run("diff one nowhere").status, 2);
   EXPECT_EQ(run("diff one").status, 2);

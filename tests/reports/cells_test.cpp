@@ -27,6 +27,16 @@ Keys keys_of(const std::vector<TableCell>& cells) {
   return texts;
 }
 
+TEST(Entries, TellASweepColumnFromANameOfTheNode) {
+  InputNode node;
+  node.id = "scores";
+  node.point = {{"policy", "a"}, {"problem", "car"}, {"node", "7"}};
+  node.labels = {{"policy", "a"}, {"problem", "car"}, {"node", "7"}, {"problem", "car"}, {"policy", "b"}};
+  const std::vector<PointValue> expected = {{"sweep_policy", "a"}, {"problem", "car"}, {"sweep_node", "7"},
+                                            {"problem", "car"},    {"policy", "b"},    {"node", "scores"}};
+  EXPECT_EQ(entries_of({node}).front().names, expected);
+}
+
 TEST(Arrange, SortsByFirstAppearanceOfRowsThenOfColumns) {
   const std::vector<Entry> entries = {
       entry({{"policy", "random"}, {"size", "50"}}), entry({{"policy", "fpf"}, {"size", "300"}}),

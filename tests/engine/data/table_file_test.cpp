@@ -52,6 +52,21 @@ TEST(TableFile, SchemaStandsBeside) {
   EXPECT_NE(schema.find("\"doc\": \"How many.\""), std::string::npos);
 }
 
+TEST(TableFile, TheSchemaTellsWhatIsNotReproducible) {
+  const TemporaryFolder folder;
+  Table table = sample();
+  write_table(folder / "t.csv", table);
+  EXPECT_TRUE(is_reproducible(folder / "t.csv"));
+  EXPECT_EQ(TemporaryFolder::read(folder / "t.schema.json").find("reproducible"), std::string::npos);
+  table.reproducible = false;
+  write_table(folder / "t.csv", table);
+  EXPECT_FALSE(is_reproducible(folder / "t.csv"));
+  EXPECT_FALSE(read_table(folder / "t.csv").reproducible);
+  EXPECT_TRUE(is_reproducible(folder / "no_schema.csv"));
+  folder.write("broken.schema.json", "{");
+  EXPECT_TRUE(is_reproducible(folder / "broken.csv"));
+}
+
 TEST(TableFile, ReadsBackWhatWasWritten) {
   const TemporaryFolder folder;
   write_table(folder / "t.csv", sample());
