@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <stdexcept>
 
 #include "engine/data/hash.h"
 #include "engine/graph/key.h"
@@ -33,31 +34,27 @@ Label label(std::string name, const std::string& value, std::string doc) {
 }
 
 /// The labels without those that repeat: a sweep over the problem says the same as the problem.
-std::vector<PointValue> distinct_labels(const PlannedNode& node) {
+std::vector<PointValue> distinct_labels(const NodeLabels& node) {
   std::vector<PointValue> labels;
-  for (const PointValue& value : node.labels) {
+  for (const PointValue& value : node.columns) {
     if (std::find(labels.begin(), labels.end(), value) == labels.end()) labels.push_back(value);
   }
   return labels;
 }
 
-}  // namespace
-
-std::string labels_hash(const PlannedNode& node) {
-  if (node.node->labelled_tables().empty()) return {};
-  std::string text;
-  for (const auto& [name, value] : node.labels) add_line(text, name, value);
-  add_line(text, "replicate", node.replicate ? std::to_string(*node.replicate) : "");
-  return content_hash(text);
+void add_labels(std::string& text, const NodeLabels& labels) {
+  for (const auto& [name, value] : labels.columns) add_line(text, name, value);
+  add_line(text, "replicate", labels.replicate ? std::to_string(*labels.replicate) : "");
 }
 
-Table labelled(const Table& table, const PlannedNode& node) {
+/// The names of a node as a table of one row; `table` is what it is put before.
+Table label_columns(const Table& table, const NodeLabels& node) {
   std::vector<Label> labels;
   const std::vector<PointValue> given = distinct_labels(node);
   for (std::size_t i = 0; i < given.size(); ++i) {
     const std::string& name = given[i].first;
     const std::string& value = given[i].second;
-    const bool sweep = i < node.point.size();
+    const bool sweep = i < node.sweep_columns;
     const auto same = [&](const PointValue& later) { return later.first == name; };
     const bool taken =
         sweep && (table.has(name) || name == "replicate" ||
@@ -69,14 +66,56 @@ Table labelled(const Table& table, const PlannedNode& node) {
   if (node.replicate) labels.back().cell = std::int64_t{*node.replicate};
 
   Table result;
-  for (const Label& l : labels) result.columns.push_back(l.column);
-  result.columns.insert(result.columns.end(), table.columns.begin(), table.columns.end());
-  for (const std::vector<Cell>& row : table.rows) {
-    std::vector<Cell>& longer = result.rows.emplace_back();
-    for (const Label& l : labels) longer.push_back(l.cell);
-    longer.insert(longer.end(), row.begin(), row.end());
+  std::vector<Cell>& row = result.rows.emplace_back();
+  for (Label& l : labels) {
+    result.columns.push_back(std::move(l.column));
+    row.push_back(std::move(l.cell));
   }
   return result;
+}
+
+/// Row i of the result is row i of `names`, the last one repeated, and then row i of `table`.
+Table side_by_side(Table names, const Table& table) {
+  Table result{std::move(names.columns), {}};
+  result.columns.insert(result.columns.end(), table.columns.begin(), table.columns.end());
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    std::vector<Cell>& longer = result.rows.emplace_back(names.rows[std::min(i, names.rows.size() - 1)]);
+    longer.insert(longer.end(), table.rows[i].begin(), table.rows[i].end());
+  }
+  return result;
+}
+
+}  // namespace
+
+NodeLabels labels_of(const PlannedNode& node) {
+  return {node.labels, node.point.size(), node.replicate};
+}
+
+std::string labels_hash(const PlannedNode& node) {
+  std::string text;
+  if (!node.node->labelled_tables().empty()) add_labels(text, labels_of(node));
+  for (const NodeLabels& row : node.row_labels) add_labels(text, row);
+  return text.empty() ? std::string() : content_hash(text);
+}
+
+Table labelled(const Table& table, const PlannedNode& node) {
+  return side_by_side(label_columns(table, labels_of(node)), table);
+}
+
+Table labelled_rows(const Table& table, const std::vector<NodeLabels>& rows) {
+  if (rows.size() != table.rows.size()) throw std::logic_error("a table of inputs has not a row for each");
+  std::vector<Table> names(1);  // the first orders the columns: those of sweeps before the others
+  for (const NodeLabels& row : rows) names.push_back(label_columns(table, row));
+  for (const bool of_sweeps : {true, false}) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const std::vector<ColumnInfo>& columns = names[i + 1].columns;
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        const bool wanted = (c < rows[i].sweep_columns) == of_sweeps;
+        if (wanted && !names[0].has(columns[c].name)) names[0].columns.push_back(columns[c]);
+      }
+    }
+  }
+  return side_by_side(join_rows(names), table);
 }
 
 Table join_rows(const std::vector<Table>& tables) {

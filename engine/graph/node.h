@@ -81,6 +81,12 @@ class Interrupted : public std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
+/// A table with a row for each node that a reference parameter leads to, in their order.
+struct InputTable {
+  std::string file;
+  std::string parameter;
+};
+
 /// A kind of node of the experiment graph. Immutable once read; run writes files into the context's folder,
 /// and nothing else decides them than parameters, inputs and draws.
 class Node : public NodeOptions {
@@ -104,11 +110,15 @@ class Node : public NodeOptions {
   /// True when it takes all replicates of a node where it has none of its own, but one sweep point only
   /// (train's samples).
   virtual bool gathers_replicates(std::string_view) const { return false; }
-  /// True when its files show the labels and replicates of its inputs, which then enter its key (table).
+  /// True when its files show the labels and replicates of its inputs, which then enter its key. Only for
+  /// nodes that make nothing for others (table): renaming a node must not change what is computed from it.
   virtual bool shows_labels() const { return false; }
   /// Tables among its files to which the engine adds the node's labels and replicate as first columns. The
   /// stored result is without, so that equal work under other names is done once.
   virtual std::vector<std::string> labelled_tables() const { return {}; }
+  /// A table among its files whose rows get the labels and replicates of the inputs that they stand for, in
+  /// the same way (select).
+  virtual std::optional<InputTable> input_table() const { return std::nullopt; }
   /// Folder of the run in which its tables appear under the node's id ("tables"); empty: none.
   virtual std::string published_in() const { return {}; }
   /// Columns of the dataset that it makes, as far as they are known when planning; empty: unknown.

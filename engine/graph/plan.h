@@ -20,6 +20,13 @@ struct PlannedInput {
   std::vector<std::size_t> nodes;
 };
 
+/// How tables name a node.
+struct NodeLabels {
+  std::vector<PointValue> columns;  ///< sweep columns, problem, policy
+  std::size_t sweep_columns = 0;    ///< how many of them are sweep columns; they stand first
+  std::optional<int> replicate;
+};
+
 /// One node to compute, or a definition: a node element at one sweep point, for one item of its fan-out and
 /// one replicate.
 struct PlannedNode {
@@ -40,7 +47,8 @@ struct PlannedNode {
   std::shared_ptr<const Node> node;
   std::shared_ptr<const Element> resolved;  ///< every parameter with its value
   std::vector<PlannedInput> inputs;         ///< in the order of the parameters
-  std::vector<PointValue> labels;    ///< columns that name it in tables: sweep columns, problem, policy
+  std::vector<PointValue> labels;      ///< columns that name it in tables: sweep columns, problem, policy
+  std::vector<NodeLabels> row_labels;  ///< of the rows of Node::input_table
   std::vector<std::string> streams;  ///< streams of draws it depends on, its own first (unless a definition)
   std::optional<std::size_t> training;  ///< node that learned the policy it is about; none: not learned
   std::string parameters_text;          ///< part of the key text that comes from `resolved`; see key.h

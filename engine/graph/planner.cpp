@@ -7,6 +7,7 @@
 #include <set>
 
 #include "engine/data/file_system.h"
+#include "engine/graph/labelled.h"
 #include "registry/text.h"
 
 namespace coppice {
@@ -77,6 +78,15 @@ void label_node(PlannedNode& node, const Plan& plan) {
       node.labels.emplace_back(artifact, node.item.empty() || !input.fans_out ? read.id : node.item);
       break;
     }
+  }
+}
+
+/// How the rows of its input table name what they stand for.
+void label_rows(PlannedNode& node, const Plan& plan) {
+  const std::optional<InputTable> table = node.node->input_table();
+  for (const PlannedInput& input : node.inputs) {
+    if (!table || input.parameter != table->parameter) continue;
+    for (const std::size_t i : input.nodes) node.row_labels.push_back(labels_of(plan.nodes[i]));
   }
 }
 
@@ -227,6 +237,7 @@ void Planner::add(std::size_t declared, DeclaredElement& element, const Variant&
   }
   name_node(node);
   label_node(node, plan_);
+  label_rows(node, plan_);
   collect_streams(node, plan_);
   node.training = training_of(node, plan_);
   index_.add(declared, plan_.nodes.size(), standing_of(node));

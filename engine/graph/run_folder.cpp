@@ -169,6 +169,10 @@ void RunFolder::place(const PlannedNode& node, const ResultRecord& result, const
     const fs::path file = path_ / place_of_file(node, table);
     write_table(file, labelled(read_table(file), node));
   }
+  if (const std::optional<InputTable> table = node.node->input_table()) {
+    const fs::path file = path_ / place_of_file(node, table->file);
+    write_table(file, labelled_rows(read_table(file), node.row_labels));
+  }
   for (PlacedFile& file : placement.files) {
     if (!stamp_file(path_ / file.path, file.stamp)) {
       throw std::runtime_error(fmt::format("cannot read {}: it vanished", (path_ / file.path).string()));

@@ -28,7 +28,9 @@ struct SelectNode : Node {
 
   std::vector<std::string> makes() const override { return {"policy", "selection", "timing"}; }
   bool gathers(std::string_view parameter) const override { return parameter == "policies"; }
-  bool shows_labels() const override { return true; }
+  std::optional<InputTable> input_table() const override {
+    return InputTable{std::string(kSelectionFile), "policies"};
+  }
 
   void check(const NodeContext& context) const override {
     const auto target = load_problem(context.inputs("problem").front());
@@ -56,7 +58,7 @@ struct SelectNode : Node {
     const auto best =
         static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
     write_policy(load_policy(context.inputs("policies")[best], *target), target->spaces(), context);
-    write_table(context.folder() / kSelectionFile, selection(context.inputs("policies"), played, best));
+    write_table(context.folder() / kSelectionFile, selection(played, best));
   }
 
   static Parameters<SelectNode> parameters() {
@@ -101,23 +103,17 @@ struct SelectNode : Node {
     write_policy_file(context.folder() / kPolicyFile, file);
   }
 
-  static Table selection(const std::vector<InputNode>& policies, const std::vector<Returns>& played,
-                         std::size_t best) {
+  /// Who the rows stand for is added where the run shows them: the policy must not depend on names.
+  static Table selection(const std::vector<Returns>& played, std::size_t best) {
     using Type = ColumnInfo::Type;
     Table table;
-    table.columns = {{"candidate", Type::text, "", "Id and sweep point of the policy."},
-                     {"replicate", Type::integer, "", "Replicate of the policy."},
-                     {"episodes", Type::integer, "", "Episodes played."},
+    table.columns = {{"episodes", Type::integer, "", "Episodes played."},
                      {"mean_return", Type::number, "", "Mean sum of rewards in them."},
                      {"mean_discounted_return", Type::number, "", "Mean discounted sum of rewards."},
                      {"sd", Type::number, "", "Deviation of an episode's return (n - 1)."},
                      {"selected", Type::boolean, "", "1: the one that was taken."}};
-    for (std::size_t i = 0; i < policies.size(); ++i) {
-      std::string name = policies[i].id;
-      for (const auto& [column, value] : policies[i].point) name += fmt::format(" {}={}", column, value);
-      const std::optional<int> replicate = policies[i].replicate;
-      table.rows.push_back({name, replicate ? Cell(std::int64_t{*replicate}) : Cell(),
-                            static_cast<std::int64_t>(played[i].total.size()), mean(played[i].total),
+    for (std::size_t i = 0; i < played.size(); ++i) {
+      table.rows.push_back({static_cast<std::int64_t>(played[i].total.size()), mean(played[i].total),
                             mean(played[i].discounted), standard_deviation(played[i].total),
                             std::int64_t{i == best}});
     }
@@ -126,7 +122,7 @@ struct SelectNode : Node {
 };
 
 const Component<Node, SelectNode> kComponent(
-    "select", "Take the best of several policies, judged on scenarios of its own.", "no publication");
+    "select", "Take the best of several policies, judged on scenarios of its own.", "no publication", 2);
 
 }  // namespace
 }  // namespace coppice

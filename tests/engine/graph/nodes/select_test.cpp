@@ -44,7 +44,6 @@ TEST(Select, TakesTheBestAndRecordsAll) {
   ASSERT_EQ(record.rows.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(number(record.rows[i][record.column("selected")]), i == 1 ? 1 : 0);
-    EXPECT_EQ(number(record.rows[i][record.column("replicate")]), static_cast<double>(i));
   }
   EXPECT_NEAR(number(record.rows[1][record.column("mean_return")]), -3.4227, 1e-3);
   EXPECT_EQ(context.counts.at("episodes"), 12);
