@@ -87,6 +87,14 @@ MadePolicy load_policy(const InputNode& node, const Problem& problem) {
   return policy;
 }
 
+std::string common_origin(const InputNode& a, const InputNode& b) {
+  if (!a.streams.empty() && !b.streams.empty() && a.streams.front() == b.streams.front())
+    return fmt::format("come from the same draws ({})", b.streams.front());
+  const std::string_view file = a.element.get("file");  // of datasets, which draw nothing
+  const bool same_file = a.streams.empty() && !file.empty() && file == b.element.get("file");
+  return same_file ? "are the same file" : "";
+}
+
 Dataset load_dataset(const InputNode& node, const Spaces& spaces) {
   return read_dataset(node.folder / kDatasetFile, spaces);
 }

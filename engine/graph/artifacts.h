@@ -35,6 +35,10 @@ std::shared_ptr<const Problem> load_problem(const InputNode& node);
 /// learned policy is not there yet: null.
 MadePolicy load_policy(const InputNode& node, const Problem& problem);
 
+/// Why two datasets say the same twice, as "come from the same draws (collect 0)"; empty when they do not, as
+/// far as is known.
+std::string common_origin(const InputNode& a, const InputNode& b);
+
 /// The dataset of a node that makes one.
 Dataset load_dataset(const InputNode& node, const Spaces& spaces);
 

@@ -173,26 +173,14 @@ struct FitNode : Node {
   static void check_test(const NodeContext& context, Diagnostics& mistakes) {
     for (const InputNode& train : context.inputs("samples")) {
       for (const InputNode& judge : context.inputs("test")) {
-        if (check_pair(train, judge, mistakes)) return;
+        const std::string origin = common_origin(train, judge);
+        if (origin.empty()) continue;
+        mistakes.error(
+            {}, fmt::format("samples '{}' and test '{}' {}", train.id, judge.id, origin),
+            judge.streams.empty() ? "" : fmt::format("give '{}' a seed_label of its own", judge.id));
+        return;
       }
     }
-  }
-
-  /// True when it found a mistake.
-  static bool check_pair(const InputNode& train, const InputNode& judge, Diagnostics& mistakes) {
-    const bool same_draws =
-        !train.streams.empty() && !judge.streams.empty() && train.streams.front() == judge.streams.front();
-    const std::string_view file = train.element.get("file");  // of datasets, which draw nothing
-    const bool same_file = train.streams.empty() && !file.empty() && file == judge.element.get("file");
-    if (same_draws) {
-      mistakes.error({},
-                     fmt::format("samples '{}' and test '{}' come from the same draws ({})", train.id,
-                                 judge.id, judge.streams.front()),
-                     fmt::format("give '{}' a seed_label of its own", judge.id));
-    } else if (same_file) {
-      mistakes.error({}, fmt::format("samples '{}' and test '{}' are the same file", train.id, judge.id));
-    }
-    return same_draws || same_file;
   }
 };
 

@@ -90,6 +90,7 @@ struct TrainNode : Node {
   void check(const NodeContext& context) const override {
     const auto target = load_problem(context.inputs("problem").front());
     check_needs(*target);
+    check_samples(context.inputs("samples"));
     if (!policy.id.empty()) load_policy(context.inputs("policy").front(), *target);
   }
 
@@ -151,6 +152,22 @@ struct TrainNode : Node {
     };
     refuse(needs.uses_value, "value", value);
     refuse(needs.uses_policy, "policy", policy);
+    mistakes.throw_if_any();
+  }
+
+  /// Episodes that are there twice would count twice.
+  static void check_samples(const std::vector<InputNode>& nodes) {
+    Diagnostics mistakes;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const std::string origin = common_origin(nodes[j], nodes[i]);
+        if (origin.empty()) continue;
+        const std::string hint =
+            nodes[i].streams.empty() ? "" : fmt::format("give '{}' a seed_label of its own", nodes[i].id);
+        mistakes.error({}, fmt::format("samples '{}' and '{}' {}", nodes[j].id, nodes[i].id, origin), hint);
+        break;
+      }
+    }
     mistakes.throw_if_any();
   }
 

@@ -168,6 +168,30 @@ TEST(Train, JoinsTheSamplesOfSeveralNodes) {
   EXPECT_EQ(both.counts.at("samples"), one.counts.at("steps") + two.counts.at("steps"));
 }
 
+TEST(Train, RefusesSamplesThatAreThereTwice) {
+  FakeContext context;
+  give_problem(context);
+  const auto data = [](const std::string& id, const std::string& stream, const std::string& file = {}) {
+    InputNode made = input(collect(id));
+    if (!stream.empty()) made.streams = {stream, "evaluate 0"};
+    if (!file.empty()) made.element.set("file", file);
+    return made;
+  };
+  const auto error = [&](std::vector<InputNode> samples) {
+    context.given["samples"] = std::move(samples);
+    return error_of([&] { training({{"samples", "true"}}, {{"samples", "c, d"}})->check(context); });
+  };
+  EXPECT_THAT(
+      error({data("a", "more 0"), data("c", "collect 0"), data("c", "collect 1"), data("d", "collect 1")}),
+      AllOf(HasSubstr("samples 'c' and 'd' come from the same draws (collect 1)"),
+            HasSubstr("give 'd' a seed_label of its own")));
+  EXPECT_THAT(error({data("e", "", "log.csv"), data("f", "", "log.csv")}),
+              HasSubstr("samples 'e' and 'f' are the same file"));
+  EXPECT_EQ(error({data("c", "collect 0"), data("c", "collect 1"), data("d", "more 0"),
+                   data("e", "", "log.csv"), data("f", "", "other.csv")}),
+            "");
+}
+
 TEST(Train, SaysWhatTheSolverNeeds) {
   FakeContext car, live;
   give_problem(car);
