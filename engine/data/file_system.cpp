@@ -144,6 +144,10 @@ void link_file(const std::filesystem::path& from, const std::filesystem::path& t
   ::unlink(temporary.c_str());
 }
 
+void make_read_only(const std::filesystem::path& file) {
+  if (::chmod(file.c_str(), 0444) != 0) fail("write", file, errno);
+}
+
 void remove_all(const std::filesystem::path& path) {
   std::error_code code;
   std::filesystem::remove_all(path, code);

@@ -51,6 +51,7 @@ void make_folder(const std::filesystem::path& folder);
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to);
 /// Hard link, or a copy where links are impossible; replaces what stands there.
 void link_file(const std::filesystem::path& from, const std::filesystem::path& to);
+void make_read_only(const std::filesystem::path& file);
 /// Removes a file or a folder with its content; nothing happens when there is none.
 void remove_all(const std::filesystem::path& path);
 

@@ -10,7 +10,7 @@
 namespace coppice {
 namespace {
 
-constexpr std::string_view kMagic = "coppice checkpoint 1\n";
+constexpr std::string_view kMagic = "coppice checkpoint 2\n";
 
 }  // namespace
 
@@ -22,6 +22,11 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   for (const auto& [name, amount] : checkpoint.work.counts) {
     append_text(content, name);
     append_number(content, amount);
+  }
+  append_number(content, static_cast<std::uint32_t>(checkpoint.work.measures.size()));
+  for (const auto& [name, value] : checkpoint.work.measures) {
+    append_text(content, name);
+    append_number(content, value);
   }
   content += checkpoint.state.bytes();
   std::string bytes(kMagic);
@@ -46,6 +51,10 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file) {
     for (auto left = rest.number<std::uint32_t>("the counts"); left > 0; --left) {
       const std::string name = rest.text("a count's name");
       checkpoint.work.counts[name] = rest.number<std::int64_t>("a count");
+    }
+    for (auto left = rest.number<std::uint32_t>("the measures"); left > 0; --left) {
+      const std::string name = rest.text("a measure's name");
+      checkpoint.work.measures[name] = rest.number<double>("a measure");
     }
     checkpoint.state = Archive::from_bytes(rest.take(rest.left(), "the state"));
     return checkpoint;

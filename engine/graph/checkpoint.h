@@ -15,6 +15,7 @@ struct WorkDone {
   double wall_s = 0;
   double cpu_s = 0;
   std::map<std::string, std::int64_t> counts;  ///< "steps", "evaluations", ...
+  std::map<std::string, double> measures;      ///< CPU time of one: "episode", "action"
 };
 
 /// A node's half-done work, as it lies in the store until the node is done.

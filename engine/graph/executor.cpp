@@ -129,7 +129,8 @@ ResultRecord Executor::compute(Job& job, TaskParallel& parallel, Active& active)
   const PlannedNode& node = workspace.plan.nodes[place.node];
   if (needs_process(node)) {
     // The process does nothing when the result is there.
-    if (workspace.statuses[place.node].reason == Reason::forced) store_.remove(node.key);
+    const Reason reason = workspace.statuses[place.node].reason;
+    if (reason == Reason::forced || reason == Reason::damaged) store_.remove(node.key);
     return compute_in_process(node, workspace.folder.path(), store_, {options_.runner, parallel.width()},
                               stop_);
   }

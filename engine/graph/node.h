@@ -67,7 +67,7 @@ class NodeContext {
   virtual Parallel& parallel() = 0;
   /// Adds to the work counters of timing.csv ("steps", "evaluations").
   virtual void count(std::string_view what, std::int64_t amount) = 0;
-  /// Sets a column of timing.csv ("action_s").
+  /// Sets the column "<what>_s" of timing.csv: CPU time of one ("action").
   virtual void measure(std::string_view what, double value) = 0;
   virtual void progress(std::int64_t done, std::int64_t total) = 0;
   /// The last checkpoint of this very node (same key), if an earlier run left one.

@@ -11,7 +11,7 @@
 namespace coppice {
 namespace {
 
-constexpr std::string_view kHeader = "coppice placements 1 ";
+constexpr std::string_view kHeader = "coppice placements 2 ";
 
 /// The text up to `separator`, which is taken away with it; all of it when there is none.
 std::string_view cut(std::string_view& text, char separator) {
@@ -38,6 +38,7 @@ Placement parse_placement(std::string_view line) {
     file.path = cut(line, '\t');
     file.stamp.size = parse<std::uint64_t>(cut(line, '\t'));
     file.stamp.modified_ns = parse<std::int64_t>(cut(line, '\t'));
+    file.hash = cut(line, '\t');
     placement.files.push_back(std::move(file));
   }
   return placement;
@@ -69,7 +70,8 @@ void write_placements(const std::filesystem::path& file, const Placements& place
   for (const auto& [folder, placement] : placements) {
     lines.append(folder).append("\t").append(placement.key).append("\t").append(placement.labels);
     for (const PlacedFile& placed : placement.files) {
-      lines += fmt::format("\t{}\t{}\t{}", placed.path, placed.stamp.size, placed.stamp.modified_ns);
+      const FileStamp& stamp = placed.stamp;
+      lines += fmt::format("\t{}\t{}\t{}\t{}", placed.path, stamp.size, stamp.modified_ns, placed.hash);
     }
     lines += '\n';
   }

@@ -15,6 +15,7 @@ namespace coppice {
 struct PlacedFile {
   std::string path;  ///< below the run folder
   FileStamp stamp;
+  std::string hash;  ///< of its content; "" when it is not known, as of timing.csv
 };
 
 /// A result as it lies in the run folder.

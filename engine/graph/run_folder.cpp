@@ -35,7 +35,8 @@ void remove_temporaries(const fs::path& folder) {
 
 std::string place_of_file(const PlannedNode& node, std::string_view file) {
   const std::string shelf = node.node->published_in();
-  if (shelf.empty()) return fmt::format("{}/{}", node.folder, file);
+  const bool of_result = !file.starts_with("timing.");
+  if (shelf.empty() || !of_result) return fmt::format("{}/{}", node.folder, file);
   std::string name = node.folder.substr(std::string_view("nodes/").size());
   std::replace(name.begin(), name.end(), '/', '.');
   return fmt::format("{}/{}{}", shelf, name, file.substr(std::min(file.find('.'), file.size())));
@@ -74,6 +75,18 @@ bool RunFolder::files_intact(const Placement& placement) const {
     if (!stamp_file(path.append(file.path), stamp) || stamp != file.stamp) return false;
   }
   return true;
+}
+
+bool RunFolder::has_content(const PlannedNode& node) const {
+  const Placement* placement = last(node);
+  if (placement == nullptr || placement->key != node.key) return false;
+  try {
+    return std::all_of(placement->files.begin(), placement->files.end(), [&](const PlacedFile& file) {
+      return file.hash.empty() || file_hash(path_ / file.path) == file.hash;
+    });
+  } catch (const std::runtime_error&) {  // unreadable
+    return false;
+  }
 }
 
 bool RunFolder::in_use() const {
@@ -146,16 +159,36 @@ void RunFolder::remove_all_but(const std::vector<std::string>& keep) {
 Placement RunFolder::linked(const PlannedNode& node, const ResultRecord& result,
                             const StoreReader& store) const {
   Placement placement{node.key, labels_hash(node), {}};
-  const auto add = [&](const fs::path& object, std::string place) {
+  const auto add = [&](const fs::path& object, std::string place, const std::string& hash) {
     make_folder((path_ / place).parent_path());
     link_file(object, path_ / place);
-    placement.files.push_back({std::move(place), {}});
+    placement.files.push_back({std::move(place), {}, hash});
   };
-  for (const StoredFile& file : result.files) add(store.object(file.hash), place_of_file(node, file.name));
+  for (const StoredFile& file : result.files)
+    add(store.object(file.hash), place_of_file(node, file.name), file.hash);
   std::error_code code;
   const fs::path timing = store.timing(node.key);
-  if (fs::exists(timing, code)) add(timing, node.folder + "/timing.csv");
+  if (fs::exists(timing, code)) add(timing, place_of_file(node, kTimingFile), "");
   return placement;
+}
+
+/// Puts names into the tables that show them.
+void RunFolder::write_labels(const PlannedNode& node, Placement& placement) const {
+  const auto write = [&](const std::string& table, const auto& label) {
+    const fs::path place = place_of_file(node, table);
+    write_table(path_ / place, label(read_table(path_ / place)));
+    for (const char* extension : {".csv", ".schema.json"}) {
+      const std::string written = fs::path(place).replace_extension(extension).string();
+      make_read_only(path_ / written);
+      const auto same = [&](const PlacedFile& file) { return file.path == written; };
+      const auto placed = std::find_if(placement.files.begin(), placement.files.end(), same);
+      if (placed != placement.files.end()) placed->hash = file_hash(path_ / written);
+    }
+  };
+  for (const std::string& table : node.node->labelled_tables())
+    write(table, [&](const Table& rows) { return labelled(rows, node); });
+  if (const std::optional<InputTable> table = node.node->input_table())
+    write(table->file, [&](const Table& rows) { return labelled_rows(rows, node.row_labels); });
 }
 
 void RunFolder::place(const PlannedNode& node, const ResultRecord& result, const StoreReader& store) {
@@ -165,14 +198,7 @@ void RunFolder::place(const PlannedNode& node, const ResultRecord& result, const
     for (const StoredFile& file : result.files) announce(place_of_file(node, file.name));
   }
   Placement placement = linked(node, result, store);
-  for (const std::string& table : node.node->labelled_tables()) {
-    const fs::path file = path_ / place_of_file(node, table);
-    write_table(file, labelled(read_table(file), node));
-  }
-  if (const std::optional<InputTable> table = node.node->input_table()) {
-    const fs::path file = path_ / place_of_file(node, table->file);
-    write_table(file, labelled_rows(read_table(file), node.row_labels));
-  }
+  write_labels(node, placement);
   for (PlacedFile& file : placement.files) {
     if (!stamp_file(path_ / file.path, file.stamp)) {
       throw std::runtime_error(fmt::format("cannot read {}: it vanished", (path_ / file.path).string()));
@@ -226,7 +252,8 @@ void RunFolder::join_table(const std::string& id, const std::vector<const Planne
   write_table(path_ / file, join_rows(tables));
   Placement placement{content_hash(all), "", {}};
   for (const char* extension : {".csv", ".schema.json"}) {
-    PlacedFile placed{fs::path(file).replace_extension(extension).string(), {}};
+    PlacedFile placed{fs::path(file).replace_extension(extension).string(), {}, {}};
+    make_read_only(path_ / placed.path);
     stamp_file(path_ / placed.path, placed.stamp);
     placement.files.push_back(std::move(placed));
   }

@@ -28,6 +28,8 @@ class RunFolder {
 
   /// True when the node's result lies here as a run left it.
   bool intact(const PlannedNode& node) const;
+  /// True when its files also have the content that the run left; reads them. Times are not looked at.
+  bool has_content(const PlannedNode& node) const;
   /// What the last run left for a node; null when it is unknown.
   const Placement* last(const PlannedNode& node) const;
   bool has_record() const { return recorded_; }
@@ -60,6 +62,7 @@ class RunFolder {
   void announce(const std::string& item);
   void forget(const std::string& item);
   bool files_intact(const Placement& placement) const;
+  void write_labels(const PlannedNode& node, Placement& placement) const;
   Placement linked(const PlannedNode& node, const ResultRecord& result, const StoreReader& store) const;
   void join_table(const std::string& id, const std::vector<const PlannedNode*>& nodes);
 

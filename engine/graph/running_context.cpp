@@ -1,7 +1,9 @@
 #include "engine/graph/running_context.h"
 
-#include "engine/data/csv.h"
-#include "engine/data/file_system.h"
+#include <fmt/format.h>
+
+#include "engine/data/table_file.h"
+#include "engine/graph/store.h"
 
 namespace coppice {
 
@@ -47,25 +49,31 @@ WorkDone RunningContext::work() const {
   work.cpu_s += parallel_.cpu_s();
   const std::lock_guard<std::mutex> guard(mutex_);
   for (const auto& [name, amount] : counts_) work.counts[name] += amount;
+  for (const auto& [name, value] : measures_) work.measures[name] = value;
   return work;
 }
 
 void RunningContext::write_timing() const {
+  using Type = ColumnInfo::Type;
   const WorkDone done = work();
-  std::string names;
-  std::string values;
-  const auto add = [&](const std::string& name, double value) {
-    append_csv(names += names.empty() ? "" : ",", name);
-    append_csv(values += values.empty() ? "" : ",", value);
+  Table table;
+  std::vector<Cell> row;
+  const auto add = [&](std::string name, Type type, std::string unit, Cell value, std::string doc) {
+    table.columns.push_back({std::move(name), type, std::move(unit), std::move(doc)});
+    row.push_back(std::move(value));
   };
-  add("wall_s", done.wall_s);
-  add("cpu_s", done.cpu_s);
-  for (const auto& [name, amount] : done.counts) add(name, static_cast<double>(amount));
+  add("wall_s", Type::number, "s", done.wall_s, "Wall time of the node.");
+  add("cpu_s", Type::number, "s", done.cpu_s, "CPU time of the node, of all its threads.");
   for (const auto& [name, amount] : done.counts)
-    add(name + "_per_s", static_cast<double>(amount) / done.wall_s);
-  const std::lock_guard<std::mutex> guard(mutex_);
-  for (const auto& [name, value] : measures_) add(name, value);
-  write_file(folder_ / "timing.csv", names + "\n" + values + "\n");
+    add(name, Type::integer, "", amount, fmt::format("Number of {}.", name));
+  for (const auto& [name, amount] : done.counts) {
+    add(name + "_per_s", Type::number, "1/s", static_cast<double>(amount) / done.wall_s,
+        fmt::format("Number of {} divided by wall_s.", name));
+  }
+  for (const auto& [name, value] : done.measures)
+    add(name + "_s", Type::number, "s", value, fmt::format("CPU time of one {}.", name));
+  table.rows.push_back(std::move(row));
+  write_table(folder_ / kTimingFile, table);
 }
 
 }  // namespace coppice

@@ -31,8 +31,8 @@ class RunningContext : public PlannedContext {
   WorkDone work() const;
   std::int64_t done() const { return done_; }
   std::int64_t total() const { return total_; }
-  /// Writes timing.csv into the folder: wall_s, cpu_s, the counts, each of them per second, what was
-  /// measured.
+  /// Writes timing.csv into the folder, and what its columns are: wall_s, cpu_s, the counts, each of them per
+  /// second, what was measured.
   void write_timing() const;
 
  private:

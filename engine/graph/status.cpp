@@ -118,6 +118,16 @@ class Inspector {
     return status;
   }
 
+  /// Finds damage that leaves no trace in a file's date: reads the whole result.
+  void verify(std::size_t index, NodeStatus& status) const {
+    const PlannedNode& node = plan_.nodes[index];
+    if (status.placed && folder_.has_content(node)) return;
+    status.placed = false;
+    if (store_.find_verified(node.key)) return;
+    status.reason = Reason::damaged;
+    status.runs = true;
+  }
+
   /// What is different from the last run, if anything.
   std::vector<Change> changes(std::size_t index) const {
     const PlannedNode& node = plan_.nodes[index];
@@ -142,6 +152,34 @@ class Inspector {
   StoreReader store_;
 };
 
+std::vector<NodeStatus> inspect_dates(const Plan& plan, const Selected& selected,
+                                      const Inspector& inspector) {
+  std::vector<NodeStatus> statuses(plan.nodes.size());
+  for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
+    statuses[i] = inspector.status(i, selected.forced[i]);
+    if (!selected.in[i] && !plan.nodes[i].definition) {
+      statuses[i].reason = Reason::not_selected;
+      statuses[i].runs = false;
+    }
+  }
+  return statuses;
+}
+
+/// Verifies what nodes that run will read, from the last node to the first: a node stands after its inputs.
+void verify_inputs(const Plan& plan, const Inspector& inspector, std::vector<NodeStatus>& statuses) {
+  std::vector<bool> verified(plan.nodes.size(), false);
+  for (std::size_t i = plan.nodes.size(); i-- > 0;) {
+    if (!statuses[i].runs) continue;
+    for (const PlannedInput& input : plan.nodes[i].inputs) {
+      for (const std::size_t read : input.nodes) {
+        if (statuses[read].reason != Reason::up_to_date || verified[read]) continue;
+        verified[read] = true;
+        inspector.verify(read, statuses[read]);
+      }
+    }
+  }
+}
+
 std::string shortened(const std::string& value) {
   if (value.empty()) return "(none)";
   return value.size() > 60 ? value.substr(0, 57) + "..." : value;
@@ -161,6 +199,8 @@ std::string to_text(const NodeStatus& status) {
       return "new";
     case Reason::missing_output:
       return "missing output";
+    case Reason::damaged:
+      return "damaged";
     case Reason::forced:
       return "forced";
     case Reason::changed:
@@ -181,17 +221,10 @@ std::vector<NodeStatus> inspect(const Plan& plan, const Selection& selection,
                                 const std::filesystem::path& out) {
   const Selected selected(plan, selection);
   const Inspector inspector(plan, out);
-  std::vector<NodeStatus> statuses(plan.nodes.size());
-  bool any = false;
-  for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
-    statuses[i] = inspector.status(i, selected.forced[i]);
-    if (!selected.in[i] && !plan.nodes[i].definition) {
-      statuses[i].reason = Reason::not_selected;
-      statuses[i].runs = false;
-    }
-    any = any || statuses[i].runs;
-  }
-  if (!any) return statuses;
+  std::vector<NodeStatus> statuses = inspect_dates(plan, selected, inspector);
+  if (std::none_of(statuses.begin(), statuses.end(), [](const NodeStatus& s) { return s.runs; }))
+    return statuses;
+  verify_inputs(plan, inspector, statuses);
   const Durations durations = read_durations(out);
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
     if (!statuses[i].runs) continue;
@@ -217,10 +250,10 @@ std::vector<Explanation> explain(const Plan& plan, std::string_view id_or_name,
   const std::vector<std::size_t> found = plan.find(id_or_name);
   if (found.empty()) unknown_id(plan, id_or_name);
   const Inspector inspector(plan, out);
+  const std::vector<NodeStatus> statuses = inspect(plan, {}, out);
   std::vector<Explanation> explanations;
   for (const std::size_t i : found) {
-    Explanation explanation{plan.nodes[i].name, plan.nodes[i].key, plan.key_text(i),
-                            inspector.status(i, false)};
+    Explanation explanation{plan.nodes[i].name, plan.nodes[i].key, plan.key_text(i), statuses[i]};
     explanation.status.changes = inspector.changes(i);
     explanations.push_back(std::move(explanation));
   }
@@ -236,7 +269,7 @@ RunStatus read_status(const std::filesystem::path& run_folder) {
   }
   const Plan plan = make_plan(expand(config.string(), {}));
   const std::filesystem::path out = (std::filesystem::absolute(run_folder) / "..").lexically_normal();
-  const std::vector<NodeStatus> statuses = inspect(plan, {}, out);
+  const std::vector<NodeStatus> statuses = inspect_dates(plan, Selected(plan, {}), Inspector(plan, out));
   std::map<std::string, std::string> messages;
   for (const Event& event : read_events(run_folder / "events.jsonl")) {
     if (!event.node.empty()) messages[event.node] = event.what == "failed" ? event.message : std::string();

@@ -10,7 +10,16 @@
 namespace coppice {
 
 /// Why a node runs, or does not.
-enum class Reason { definition, up_to_date, not_selected, new_node, changed, missing_output, forced };
+enum class Reason {
+  definition,
+  up_to_date,
+  not_selected,
+  new_node,
+  changed,
+  missing_output,
+  damaged,
+  forced
+};
 
 /// A line of the key text that differs from the last run's.
 struct Change {
@@ -37,8 +46,9 @@ struct Selection {
   std::vector<std::string> force;  ///< ids: run again, with what depends on them
 };
 
-/// The state of every node of the plan in the output folder `out`. Reads only. Throws ConfigError for an id
-/// that does not exist, with the nearest.
+/// The state of every node of the plan in the output folder `out`. Reads only: dates of files, and the whole
+/// of those that a node that runs will read, which therefore are what was stored. Throws ConfigError for an
+/// id that does not exist, with the nearest.
 std::vector<NodeStatus> inspect(const Plan& plan, const Selection& selection,
                                 const std::filesystem::path& out);
 

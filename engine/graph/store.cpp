@@ -21,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kTimingFile = "timing.csv";
 constexpr std::int64_t kBurst_ns = 2'000'000'000;
 
 [[noreturn]] void fail(std::string_view action, const fs::path& path, std::string_view reason) {
@@ -138,7 +137,7 @@ StoredFile Store::keep(const fs::path& file, const std::string& name) {
   StoredFile kept{.name = name, .size = stamp_of(file).size, .hash = file_hash(file)};
   const fs::path place = object(kept.hash);
   make_folder(place.parent_path());
-  if (::chmod(file.c_str(), 0444) != 0) fail("store", file, std::strerror(errno));
+  make_read_only(file);
   FileStamp there;
   const bool damaged = stamp_file(place.native(), there) && file_hash(place) != kept.hash;
   if (damaged || !link_unless_there(file, place)) rename_file(file, place);
@@ -174,6 +173,7 @@ ResultRecord Store::commit(const fs::path& made, ResultRecord result) {
       result.files.push_back(keep(made / name, name));
     } else {
       make_folder(timing(result.key).parent_path());
+      make_read_only(made / name);
       rename_file(made / name, timing(result.key));
     }
   }

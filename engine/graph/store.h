@@ -6,11 +6,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/data/file_system.h"
 
 namespace coppice {
+
+/// Times of a node: beside its result in the store, for they are not the same at every attempt.
+inline constexpr std::string_view kTimingFile = "timing.csv";
 
 /// One file of a stored result.
 struct StoredFile {
@@ -43,6 +47,8 @@ class StoreReader {
 
   /// The result of a key, if it is whole: record readable, every object there with its size and content.
   std::optional<ResultRecord> find(const std::string& key) const;
+  /// The same, reading every object: none was written to since without a trace.
+  std::optional<ResultRecord> find_verified(const std::string& key) const;
   /// The record alone, whatever became of its objects.
   std::optional<ResultRecord> read(const std::string& key) const;
   /// All keys that have a record, sorted.
@@ -77,7 +83,7 @@ class Store : public StoreReader {
   /// An empty folder for a node to write into.
   std::filesystem::path begin(const std::string& key);
   /// Moves every file of the folder into the store and acknowledges. `record` needs no files. A file
-  /// "timing.csv" is kept beside the result and is no part of it. The key's checkpoint is removed. Throws
+  /// kTimingFile is kept beside the result and is no part of it. The key's checkpoint is removed. Throws
   /// std::runtime_error with file and reason.
   ResultRecord commit(const std::filesystem::path& folder, ResultRecord record);
   /// Forgets a folder that begin made.

@@ -17,16 +17,19 @@ std::filesystem::path spread(const std::filesystem::path& folder, std::string_vi
   return path.append("/").append(name).append(extension);
 }
 
-/// True when the object is there, has its size, and has its content: not written since, or reading it shows.
-bool is_whole(const std::filesystem::path& object, const StoredFile& file) {
-  FileStamp stamp;
-  if (!stamp_file(object.native(), stamp) || stamp.size != file.size) return false;
-  if (stamp.modified_ns == file.modified_ns) return true;
+bool has_content(const std::filesystem::path& object, const StoredFile& file) {
   try {
     return file_hash(object) == file.hash;
   } catch (const std::runtime_error&) {  // unreadable
     return false;
   }
+}
+
+/// True when the object is there, has its size, and has its content: not written since, or reading it shows.
+bool is_whole(const std::filesystem::path& object, const StoredFile& file) {
+  FileStamp stamp;
+  if (!stamp_file(object.native(), stamp) || stamp.size != file.size) return false;
+  return stamp.modified_ns == file.modified_ns || has_content(object, file);
 }
 
 }  // namespace
@@ -77,6 +80,15 @@ std::optional<ResultRecord> StoreReader::find(const std::string& key) const {
   if (!found) return found;
   for (const StoredFile& part : found->files) {
     if (!is_whole(object(part.hash), part)) return std::nullopt;
+  }
+  return found;
+}
+
+std::optional<ResultRecord> StoreReader::find_verified(const std::string& key) const {
+  std::optional<ResultRecord> found = read(key);
+  if (!found) return found;
+  for (const StoredFile& part : found->files) {
+    if (!has_content(object(part.hash), part)) return std::nullopt;
   }
   return found;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <ostream>
 
 #include "tests/cli/runs.h"
@@ -246,6 +247,38 @@ TEST_F(Changes, OfTheStoreAreMended) {
     EXPECT_EQ(agreed("learn.xml"), Names{"baseline lqr"});
   }
   EXPECT_EQ(results(folder_ / "out/learn/nodes"), before);
+}
+
+TEST_F(Changes, OfStoredFilesThatLeaveNoTraceAreMendedBeforeTheyAreRead) {
+  EXPECT_EQ(ids(agreed("learn.xml")), kAll);
+  const auto before = results(folder_ / "out/learn");
+  // A digit changes and the date remains, as when a disk loses bits: the text can still be read.
+  const auto damage = [&](const std::string& name) {
+    const fs::path file = folder_ / "out/learn/nodes" / name;
+    const fs::file_time_type date = fs::last_write_time(file);
+    const std::string text = TemporaryFolder::read(file);
+    const std::size_t digit = text.find_last_of("0123456789");
+    ASSERT_NE(digit, text.npos);
+    fs::permissions(file, fs::perms::owner_write, fs::perm_options::add);
+    std::fstream(file, std::ios::in | std::ios::out | std::ios::binary)
+            .seekp(static_cast<std::streamoff>(digit))
+        << (text[digit] == '0' ? '1' : '0');
+    fs::last_write_time(file, date);
+    ASSERT_NE(TemporaryFolder::read(file), text);
+  };
+  const auto forget = [&](const std::string& name, const std::string& files) {
+    ASSERT_TRUE(fs::remove(record(name)));
+    ASSERT_EQ(script("rm -r out/learn/" + files).status, 0);
+  };
+  damage("samples/r001/dataset.csv");  // a link to the store: to be collected again
+  EXPECT_EQ(agreed("learn.xml"), Names()) << "nobody reads it";
+  forget("learned trees=3 r001", "nodes/learned/trees=3/r001");
+  EXPECT_EQ(agreed("learn.xml"), (Names{"samples r001", "learned trees=3 r001"}));
+  EXPECT_EQ(results(folder_ / "out/learn"), before);
+  damage("scores/trees=2/learned/r000/evaluation.csv");  // with names added: the store has the rest
+  forget("costs", "tables/costs.csv");
+  EXPECT_EQ(agreed("learn.xml"), Names{"costs"});
+  EXPECT_EQ(results(folder_ / "out/learn"), before);
 }
 
 TEST_F(Changes, OfStoredFilesAreMended) {

@@ -54,6 +54,41 @@ TEST_F(Runs, WriteTablesAndNameThemOnStdout) {
   }
 }
 
+TEST_F(Runs, DescribeTheColumnsOfEveryTable) {
+  ASSERT_EQ(run("small.xml").status, 0);
+  std::size_t tables = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "out/small")) {
+    if (entry.path().extension() != ".csv") continue;
+    ++tables;
+    fs::path schema = entry.path();
+    ASSERT_TRUE(fs::exists(schema.replace_extension(".schema.json"))) << entry.path();
+    std::string header;
+    for (const nlohmann::json& column : nlohmann::json::parse(TemporaryFolder::read(schema)).at("columns")) {
+      header += (header.empty() ? "" : ",") + column.at("name").get<std::string>();
+      EXPECT_NE(column.at("doc"), "") << schema << " " << header;
+    }
+    EXPECT_EQ(lines(TemporaryFolder::read(entry.path())).at(0), header) << entry.path();
+  }
+  EXPECT_EQ(tables, 2 + 2 * 2 + 2 * 3 + 1U) << "tables, samples, scores, timing of the table";
+  const std::string timing = "out/small/nodes/scores/lqr/timing.csv";
+  EXPECT_EQ(lines(TemporaryFolder::read(folder_ / timing))[0],
+            "wall_s,cpu_s,episodes,steps,episodes_per_s,steps_per_s,action_s,episode_s");
+  EXPECT_TRUE(fs::exists(folder_ / "out/small/nodes/costs/timing.schema.json"));
+  EXPECT_FALSE(contains(TemporaryFolder::read(folder_ / "out/small/tables/costs.schema.json"), "wall_s"));
+}
+
+TEST_F(Runs, LeaveReadOnlyFiles) {
+  ASSERT_EQ(run("small.xml").status, 0);
+  for (const char* part : {"nodes", "tables"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(folder_ / "out/small" / part)) {
+      if (!entry.is_regular_file()) continue;
+      EXPECT_EQ(entry.status().permissions() & static_cast<fs::perms>(0222), fs::perms::none) << entry.path();
+    }
+  }
+  EXPECT_EQ(run("small.xml --force samples").status, 0) << "they can be made again";
+  EXPECT_EQ(run("small.xml episodes:=6").status, 0);
+}
+
 TEST_F(Runs, AreUpToDateTheSecondTime) {
   ASSERT_EQ(run("small.xml").status, 0);
   const Ended again = run("run small.xml");

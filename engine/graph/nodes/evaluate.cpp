@@ -107,8 +107,8 @@ struct EvaluateNode : Node {
     Serial serial;
     const double begin = thread_seconds();
     play.advance(1, serial, &recorder);
-    context.measure("episode_s", thread_seconds() - begin);
-    context.measure("action_s", action_time(policy, recorder.states(), state_size, context.draws()));
+    context.measure("episode", thread_seconds() - begin);
+    context.measure("action", action_time(policy, recorder.states(), state_size, context.draws()));
   }
 };
 

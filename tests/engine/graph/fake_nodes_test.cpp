@@ -132,6 +132,7 @@ struct Worker : Node {
       done = saved->get<std::vector<std::int64_t>>("state").at(0);
       sum = saved->get<std::vector<std::int64_t>>("state").at(1);
     }
+    if (done == 0) context.measure("unit", 1.5);
     for (; done < units; ++done) {
       context.progress(done, units);
       if (context.parallel().stop_requested()) {

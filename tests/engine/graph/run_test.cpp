@@ -320,6 +320,7 @@ TEST_F(Run, StopsWithACheckpointAndGoesOnFromIt) {
   const Table timing = read_table(file("nodes/w/timing.csv"));
   EXPECT_EQ(number(timing.rows[0][timing.column("units")]), 60) << "both attempts count";
   EXPECT_GE(number(timing.rows[0][timing.column("wall_s")]), 0.6);
+  EXPECT_EQ(number(timing.rows[0][timing.column("unit_s")]), 1.5) << "measured by the first";
 }
 
 TEST_F(Run, SharesCoresAndKeepsAJournal) {

@@ -50,8 +50,8 @@ TEST(Evaluate, AgreesWithTheRiccatiSolution) {
   EXPECT_EQ(value(context, "horizon"), 200);
   EXPECT_EQ(value(context, "discount"), 0.98);
   EXPECT_EQ(context.counts.at("steps"), 600);
-  EXPECT_GT(context.measures.at("action_s"), 0);
-  EXPECT_GT(context.measures.at("episode_s"), 0);
+  EXPECT_GT(context.measures.at("action"), 0);
+  EXPECT_GT(context.measures.at("episode"), 0);
 }
 
 TEST(Evaluate, TakesItsOwnHorizonAndDiscountBeforeTheProblems) {
