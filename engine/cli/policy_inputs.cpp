@@ -59,7 +59,7 @@ std::string difference(const Space& known, const Space& asked, const std::string
   }
   for (std::size_t i = 0; i < known.size(); ++i) {
     if (known[i].name == asked[i].name && known[i].unit == asked[i].unit) continue;
-    return fmt::format("axis {} of {} is '{}' [{}] in the policy file, '{}' [{}] in the problem", i, what,
+    return fmt::format("axis {} of {} is '{}' [{}] in the policy file, '{}' [{}] in the problem", i + 1, what,
                        known[i].name, known[i].unit, asked[i].name, asked[i].unit);
   }
   return {};

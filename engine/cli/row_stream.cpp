@@ -6,9 +6,12 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
 
 namespace coppice::cli {
 namespace {
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // as spreadsheets write it
 
 /// Where the last whole record ends: after the last line end that is not inside quotes.
 std::size_t end_of_records(const std::string& text) {
@@ -46,6 +49,11 @@ std::optional<std::string> RowStream::next() {
     end = end_of_records(pending_);
   }
   if (end == 0) end = pending_.size();
+  if (!begun_ && pending_.starts_with(kByteOrderMark)) {
+    pending_.erase(0, kByteOrderMark.size());
+    end -= kByteOrderMark.size();
+  }
+  begun_ = true;
   if (end == 0) return std::nullopt;
   std::string records = pending_.substr(0, end);
   pending_.erase(0, end);

@@ -14,7 +14,8 @@ class RowStream {
   RowStream(int descriptor, std::function<void()> before_wait)
       : descriptor_(descriptor), before_wait_(std::move(before_wait)) {}
 
-  /// The next records, at least one, line ends (LF) included; nothing at the end. Throws std::runtime_error
+  /// The next records, at least one, line ends (LF) included, without a byte order mark; nothing at the end.
+  /// Throws std::runtime_error
   /// with the system's reason.
   std::optional<std::string> next();
 
@@ -24,6 +25,7 @@ class RowStream {
   int descriptor_;
   std::function<void()> before_wait_;
   std::string pending_;  ///< what came after the last whole record
+  bool begun_ = false;
   bool ended_ = false;
 };
 

@@ -7,6 +7,7 @@
 
 #include "engine/data/file_system.h"
 #include "engine/data/table_file.h"
+#include "registry/source.h"
 
 namespace coppice {
 namespace {
@@ -45,6 +46,13 @@ bool same_bytes(const fs::path& a, const fs::path& b) {
   if (!stamp_file(a.string(), first) || !stamp_file(b.string(), second)) return false;
   std::error_code code;
   return first.size == second.size && (fs::equivalent(a, b, code) || read_file(a) == read_file(b));
+}
+
+/// The config without what gives a run its name only.
+std::string parameters_of(const fs::path& run_folder) {
+  Element root = parse_xml(read_source((run_folder / "resolved.xml").string()));
+  root.set("name", "");
+  return to_xml(root);
 }
 
 /// Keys stand before the numbers of replicates.
@@ -102,7 +110,8 @@ TableDifference compare_tables(const std::string& file, const fs::path& first, c
 
 RunDifference compare_runs(const fs::path& first, const fs::path& second) {
   RunDifference difference;
-  difference.other_parameters = !same_bytes(first / "resolved.xml", second / "resolved.xml");
+  difference.other_parameters = !same_bytes(first / "resolved.xml", second / "resolved.xml") &&
+                                parameters_of(first) != parameters_of(second);
   const std::set<std::string> before = result_files(first), now = result_files(second);
   std::set<std::string> all = before;
   all.insert(now.begin(), now.end());

@@ -27,7 +27,8 @@ void check_axes(const std::string& whose, const Space& axes, std::size_t limit) 
   }
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const Axis& axis = axes[i];
-    if (axis.name.empty()) throw std::invalid_argument(fmt::format("axis {} of {} has no name", i, whose));
+    if (axis.name.empty())
+      throw std::invalid_argument(fmt::format("axis {} of {} has no name", i + 1, whose));
     const auto same = [&axis](const Axis& other) { return other.name == axis.name; };
     if (std::any_of(axes.begin(), axes.begin() + static_cast<std::ptrdiff_t>(i), same)) {
       throw std::invalid_argument(fmt::format("{} has two axes called '{}'", whose, axis.name));

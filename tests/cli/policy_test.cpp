@@ -55,6 +55,16 @@ TEST_F(PolicyFiles, InfoShowsWhatTheFileHolds) {
   EXPECT_LT(json.at("action_s").get<double>(), 1e-3);
 }
 
+TEST_F(PolicyFiles, ActTakesAByteOrderMark) {
+  const std::string csv = "s_position,s_speed\n1,0\n";
+  const Ended ended = act("\xEF\xBB\xBF" + csv);
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(ended.out, act(csv).out);
+  const Ended late = act(csv + "\xEF\xBB\xBF" + "1,0\n");
+  EXPECT_EQ(late.status, 2) << "only at the start is it none of the text";
+  EXPECT_TRUE(contains(act("\xEF\xBB\xBF").err, "no data"));
+}
+
 TEST_F(PolicyFiles, ActAnswersEachStateInOrder) {
   const Ended ended = act("s_position,s_speed\n1,0\n0,0.5\n-0.2,0.1\n");
   EXPECT_EQ(ended.status, 0) << ended.err;
