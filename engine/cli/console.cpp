@@ -1,6 +1,7 @@
 #include "engine/cli/console.h"
 
 #include <fmt/format.h>
+#include <stdio_ext.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -59,6 +60,18 @@ void Console::out(std::string_view text) {
 
 void Console::flush() {
   if (std::fflush(stdout) != 0) output_failed();
+}
+
+void Console::offer(std::string_view text) {
+  try {
+    out(text);
+    flush();
+    return;
+  } catch (const OutputClosed&) {
+  } catch (const std::runtime_error& error) {
+    say(styled(Style::yellow, "warning: ") + error.what() + '\n');
+  }
+  ::__fpurge(stdout);  // else it would be tried again
 }
 
 void Console::say(std::string_view text) {

@@ -20,6 +20,9 @@ class Console {
   void out(std::string_view text);
   /// Flushes stdout; throws as out does.
   void flush();
+  /// As out and flush, for data beside the work of a command: where nobody reads it, nothing is said; where
+  /// it cannot be written, the reason is said, and the exit status remains that of the work.
+  void offer(std::string_view text);
   /// Writes talk to stderr, at once; failures are ignored, for there is nobody left to tell.
   void say(std::string_view text);
   /// Says every mistake and, when there are several, their number.

@@ -20,7 +20,7 @@ struct MakeReport {
   int run(const CommandLine& line, Console& console) const {
     for (const std::filesystem::path& run_folder : run_folders(line, folder)) {
       write_reports(run_folder);
-      console.out((run_folder / "report.html").string() + '\n');
+      console.offer((run_folder / "report.html").string() + '\n');
     }
     return kDone;
   }

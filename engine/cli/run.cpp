@@ -82,7 +82,7 @@ struct Run : ConfigInputs, SelectionInputs {
     options.page = write_reports;
     const RunOutcome outcome = coppice::run(plans, options);
     if (progress == "auto" || progress == "plain") console.say(summary(console, outcome));
-    for (const Plan& plan : plans) console.out(published_files(plan, out));
+    for (const Plan& plan : plans) console.offer(published_files(plan, out));
     return outcome.interrupted ? kInterrupted : outcome.failures.empty() ? kDone : kFailed;
   }
 };

@@ -233,14 +233,17 @@ TEST_F(BadInput, ClosedStreamsLeaveFilesAlone) {
   const auto expected = results(folder_ / "calm/e");
   struct Case {
     std::string closed;
-    int status;  // the path of the table goes to stdout
+    bool said;  // the paths of tables and page, which go to stdout, cannot be written
   };
-  for (const Case& given : {Case{">&-", 1}, Case{"2>&-", 0}, Case{"<&-", 0}, Case{"<&- >&- 2>&-", 1},
-                            Case{"> /dev/full", 1}, Case{"2> /dev/full", 0}}) {
+  for (const Case& given :
+       {Case{">&-", true}, Case{"2>&-", false}, Case{"<&-", false}, Case{"<&- >&- 2>&-", false},
+        Case{"> /dev/full", true}, Case{"2> /dev/full", false}, Case{"| true", false}}) {
     SCOPED_TRACE(given.closed);
     for (const std::string progress : {"plain", "json"}) {
       script("rm -rf out");
-      EXPECT_EQ(script("runner e.xml --progress " + progress + " " + given.closed).status, given.status);
+      const Ended ended = script("set -o pipefail; runner e.xml --progress " + progress + " " + given.closed);
+      EXPECT_EQ(ended.status, 0) << "all nodes are done";
+      EXPECT_EQ(contains(ended.err, "warning: cannot write to standard output: "), given.said) << ended.err;
       EXPECT_EQ(results(folder_ / "out/e"), expected);
       // The first files opened would get the numbers of the closed streams, and the talk with them.
       const std::string owner = TemporaryFolder::read(folder_ / "out/e/.coppice/lock");
@@ -253,6 +256,10 @@ TEST_F(BadInput, ClosedStreamsLeaveFilesAlone) {
       EXPECT_TRUE(contains(script("head -c 15 out/index.sqlite").out, "SQLite format 3"));
     }
   }
+  folder_.write("bad.csv", "value\n");
+  write("<dataset id=\"s\" problem=\"car\" file=\"bad.csv\"/>");
+  for (const std::string closed : {"> paths", ">&-", "> /dev/full", "| true"})
+    EXPECT_EQ(script("set -o pipefail; runner e.xml --out failed " + closed).status, 1) << closed;
   for (const std::string command : {"list", "schema", "expand e.xml", "plan e.xml", "status", "--help"}) {
     EXPECT_EQ(script("runner " + command + " >&-").status, 1) << command;
     EXPECT_EQ(script("runner " + command + " > /dev/full").status, 1) << command;
