@@ -33,7 +33,8 @@ RunRecord read_record(const fs::path& folder) {
   record.folder = folder;
   record.status = read_status(folder);
   record.experiment = parse_xml(read_source((folder / "resolved.xml").string()));
-  record.provenance = Json::parse(read_file(folder / "provenance.json"), nullptr, false);
+  const fs::path provenance = folder / "provenance.json";
+  if (fs::is_regular_file(provenance)) record.provenance = Json::parse(read_file(provenance), nullptr, false);
   if (!record.provenance.is_object()) record.provenance = Json::object();
   return record;
 }

@@ -18,10 +18,15 @@ bool is_run_folder(const fs::path& folder) {
 
 /// The words after `runner` of the command that ran last in the folder; empty when it is not recorded.
 std::vector<std::string> recorded_command(const fs::path& run_folder) {
-  const nlohmann::json provenance =
-      nlohmann::json::parse(read_file(run_folder / "provenance.json"), nullptr, false);
-  if (!provenance.is_object() || !provenance.contains("command")) return {};
-  return provenance.at("command").get<std::vector<std::string>>();
+  try {
+    return nlohmann::json::parse(read_file(run_folder / "provenance.json"))
+        .at("command")
+        .get<std::vector<std::string>>();
+  } catch (const nlohmann::json::exception&) {  // damaged, or without it
+    return {};
+  } catch (const std::runtime_error&) {  // not there
+    return {};
+  }
 }
 
 /// The configs, overrides and seed of a recorded `run`.
@@ -63,6 +68,10 @@ std::vector<Plan> plans_of_last_runs(const CommandLine& line, const std::string&
     const CommandLine recorded(command);
     seen.push_back(std::move(command));
     for (Plan& plan : plan_all(recorded, recorded_inputs(parse(recorded)))) plans.push_back(std::move(plan));
+  }
+  if (seen.empty()) {
+    throw line.error(out, "no provenance.json in '" + out + "' says which configs were run",
+                     "name them after the node");
   }
   return plans;
 }

@@ -61,7 +61,9 @@ TEST_F(Diff, SaysWhichRowsAndExperimentsOneRunHasNot) {
   ASSERT_EQ(run("other.xml --out two").status, 0);
   EXPECT_TRUE(contains(run("diff one two").out, "other: only in two\n"));
   EXPECT_TRUE(contains(run("diff two one").out, "other: only in two\n"));
-  EXPECT_EQ(run("diff one two/other").status, 0) << "one experiment under two names";
+  const Ended renamed = run("diff one two/other");
+  EXPECT_EQ(renamed.status, 0) << "one experiment under two names";
+  EXPECT_EQ(renamed.out, "small: 12 result files, all equal\n");
 }
 
 TEST_F(Diff, NoticesAChangedByte) {
@@ -90,6 +92,36 @@ TEST_F(Diff, ComparesFiguresExceptThoseOfTimes) {
   EXPECT_TRUE(contains(differing, "figures/spread.csv differs\n")) << differing;
   EXPECT_TRUE(contains(differing, "figures/spread.vl.json differs\n")) << differing;
   EXPECT_FALSE(contains(differing, "figures/speed")) << differing;
+}
+
+TEST_F(Diff, SaysWhatIsDamaged) {
+  ASSERT_EQ(run("small.xml --out broken").status, 0);
+  const auto damage = [&](const std::string& file, const std::string& text) {
+    fs::remove(folder_ / "broken/small" / file);
+    folder_.write("broken/small/" + file, text);
+  };
+  const auto refused = [&](const std::string& command, const std::string& message) {
+    const Ended ended = run(command);
+    EXPECT_EQ(ended.status, 2) << command;
+    EXPECT_TRUE(contains(ended.err, message)) << command << "\n" << ended.err;
+    EXPECT_LE(lines(ended.err).size(), 4U) << ended.err;
+  };
+  for (const std::string record : {"[", "{\"command\": 5}"}) {
+    damage("provenance.json", record);
+    refused("why costs --out broken", "no provenance.json in 'broken' says which configs were run");
+  }
+  fs::remove(folder_ / "broken/small/provenance.json");
+  refused("why costs --out broken", "no provenance.json in 'broken' says which configs were run");
+  EXPECT_EQ(run("report broken").status, 0) << "the page then does without";
+  EXPECT_EQ(run("status broken").status, 0);
+  damage("tables/costs.csv", "policy,mean\nlqr\n");
+  refused("diff one broken", "broken/small/tables/costs.csv:2:1: error: ");
+  damage("resolved.xml", "<experiment coppice=");
+  for (const std::string command : {"status broken", "report broken", "diff one broken"})
+    refused(command, "broken/small/resolved.xml:1:");
+  damage("resolved.xml", "");
+  for (const std::string command : {"status broken", "report broken", "diff one broken"})
+    refused(command, "broken/small/resolved.xml");
 }
 
 TEST_F(Diff, RefusesFoldersWithoutRuns) {
