@@ -129,8 +129,11 @@ ResultRecord Executor::compute(Job& job, TaskParallel& parallel, Active& active)
   const PlannedNode& node = workspace.plan.nodes[place.node];
   if (needs_process(node)) {
     // The process does nothing when the result is there.
-    const Reason reason = workspace.statuses[place.node].reason;
-    if (reason == Reason::forced || reason == Reason::damaged) store_.remove(node.key);
+    const bool anew = std::any_of(job.places.begin(), job.places.end(), [&](const NodePlace& each) {
+      const Reason reason = workspace_of(each).statuses[each.node].reason;
+      return reason == Reason::forced || reason == Reason::damaged;
+    });
+    if (anew) store_.remove(node.key);
     return compute_in_process(node, workspace.folder.path(), store_, {options_.runner, parallel.width()},
                               stop_);
   }

@@ -57,6 +57,7 @@ void RunningContext::write_timing() const {
   using Type = ColumnInfo::Type;
   const WorkDone done = work();
   Table table;
+  table.reproducible = false;
   std::vector<Cell> row;
   const auto add = [&](std::string name, Type type, std::string unit, Cell value, std::string doc) {
     table.columns.push_back({std::move(name), type, std::move(unit), std::move(doc)});

@@ -63,7 +63,8 @@ TEST_F(Runs, DescribeTheColumnsOfEveryTable) {
     fs::path schema = entry.path();
     ASSERT_TRUE(fs::exists(schema.replace_extension(".schema.json"))) << entry.path();
     std::string header;
-    for (const nlohmann::json& column : nlohmann::json::parse(TemporaryFolder::read(schema)).at("columns")) {
+    const nlohmann::json described = nlohmann::json::parse(TemporaryFolder::read(schema));
+    for (const nlohmann::json& column : described.at("columns")) {
       header += (header.empty() ? "" : ",") + column.at("name").get<std::string>();
       EXPECT_NE(column.at("doc"), "") << schema << " " << header;
     }
