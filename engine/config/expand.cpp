@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 
 #include "engine/config/config_root.h"
 #include "engine/config/expander.h"
@@ -33,7 +34,11 @@ class Merger {
         values_[i].push_back(combination.back().second);
       }
     }
-    for (NodeElement& node : pass.nodes) add_node(std::move(node), combination);
+    // A value that was given twice is reported in the end.
+    if (combinations_.insert(combination).second) {
+      for (NodeElement& node : pass.nodes) add_node(std::move(node), combination);
+    }
+    for (UnusedPart& part : pass.unused) add_unused(std::move(part));
     experiment_.arguments.merge(pass.arguments);
     experiment_.complete = experiment_.complete && pass.complete;
   }
@@ -52,6 +57,12 @@ class Merger {
   }
 
  private:
+  void add_unused(UnusedPart part) {
+    const Place& place = part.element.place;
+    if (unused_.emplace(place.file.get(), place.line, place.column).second)
+      experiment_.unused.push_back(std::move(part));
+  }
+
   /// A sweep whose points depend on a swept argument has those of all passes.
   void add_sweep(SweepPoints sweep, Diagnostics& diagnostics) {
     const auto known = std::find_if(experiment_.sweeps.begin(), experiment_.sweeps.end(),
@@ -104,6 +115,8 @@ class Merger {
   std::vector<std::set<Point>> points_;           // of each sweep
   std::vector<std::vector<NodeElement>> groups_;  // the points of each node
   std::map<std::string, std::size_t> group_of_;
+  std::set<std::tuple<const SourceFile*, int, int>> unused_;
+  std::set<Point> combinations_;                  // of the swept arguments
   std::vector<std::vector<std::string>> values_;  // of each swept argument, as worked out
 };
 

@@ -24,6 +24,11 @@ struct Endless {};
 
 }  // namespace
 
+Expander::Origin::Origin(const Element& met, const Context& context) : element(&met) {
+  for (const Way* step = context.way.get(); step != nullptr; step = step->outer.get())
+    way.push_back(step->through);
+}
+
 Expander::Expander(Files& files, GivenArguments& given, std::uint64_t root_seed, std::uint64_t seed,
                    Diagnostics& diagnostics)
     : files_(files),
@@ -43,6 +48,7 @@ Expansion Expander::run(const LoadedFile& file) {
   } catch (const Endless&) {
     result_.complete = false;
   }
+  finish_unused(file);
   for (const DefinedSweep* sweep : sweep_order_) result_.sweeps.push_back(sweep->points);
   return std::move(result_);
 }
@@ -55,7 +61,8 @@ void Expander::element(const Element& element, const Context& context, Element* 
   count(element, context);
   // The conditions of a node over sweeps may depend on their columns: they are worked out at each point.
   const bool over_sweeps = parent == nullptr && !is_control(element.name) && element.find("over") != nullptr;
-  if (!over_sweeps && !wanted(element, context)) return;
+  if (!over_sweeps && !wanted(element, context))
+    return keep_unused(element, context, parent == nullptr ? "" : parent->name);
   if (parent != nullptr && parent == sweep_ && element.name == "exclude") {
     exclusions_->push_back({&element, context});  // its condition is worked out at each point
     return;
@@ -163,6 +170,33 @@ bool Expander::global_only(const Element& element, const Context& context) {
 void Expander::error(const Place& place, const Context& context, std::string message, std::string hint,
                      std::vector<std::string> notes) {
   diagnostics_.error(traced(place, context), std::move(message), std::move(hint), std::move(notes));
+}
+
+void Expander::keep_unused(const Element& element, const Context& context, std::string parent) {
+  if (!unused_.insert(&element).second) return;
+  UnusedPart part;
+  part.element = element;
+  part.element.place = traced(element.place, context);
+  part.parent = std::move(parent);
+  part.names = context.scope->names();
+  result_.unused.push_back(std::move(part));
+}
+
+/// Adds the macros that nothing called, and the names that what is left out can use. Only those in the config
+/// itself are all known: what others include may be meant for names that others have.
+void Expander::finish_unused(const LoadedFile& file) {
+  for (const auto& [name, macro] : macros_) {
+    Context context;
+    context.scope = global_;
+    context.trace = macro->place.trace;
+    if (!called_.contains(macro.get())) keep_unused(*macro->element, context, "");
+  }
+  if (result_.unused.empty()) return;
+  const std::optional<std::vector<std::string>> names = files_.every_name();
+  for (UnusedPart& part : result_.unused) {
+    part.names_known = names && result_.complete && part.element.place.file == file.source;
+    if (part.names_known) part.names.insert(part.names.end(), names->begin(), names->end());
+  }
 }
 
 void Expander::leave_out(Element* parent) {

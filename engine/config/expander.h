@@ -1,10 +1,12 @@
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/config/evaluator.h"
@@ -18,6 +20,7 @@ struct Expansion {
   std::vector<SweepPoints> sweeps;
   std::vector<NodeElement> nodes;
   std::map<std::string, std::string> arguments;
+  std::vector<UnusedPart> unused;
   bool complete = true;
 };
 
@@ -46,7 +49,18 @@ class Expander {
     const Element* element = nullptr;
     Place place;
   };
+  /// An element of a file, and the calls and inserts by which expansion came to it: by another include, it is
+  /// the same one met again.
+  struct Origin {
+    const Element* element = nullptr;
+    std::vector<const Element*> way;
+
+    Origin() = default;
+    Origin(const Element& met, const Context& context);
+    auto operator<=>(const Origin&) const = default;
+  };
   struct DefinedSweep {
+    Origin origin;
     SweepPoints points;
     SweepRows rows;
     bool failed = false;
@@ -69,6 +83,9 @@ class Expander {
   bool global_only(const Element& element, const Context& context);
   void error(const Place& place, const Context& context, std::string message, std::string hint = {},
              std::vector<std::string> notes = {});
+  /// Keeps what is left out, for check_unused.
+  void keep_unused(const Element& element, const Context& context, std::string parent);
+  void finish_unused(const LoadedFile& file);
   /// A mistake that leaves out elements.
   void leave_out(Element* parent);
 
@@ -108,6 +125,7 @@ class Expander {
 
   // expander_sweeps.cpp
   void sweep(const Element& element, const Context& context);
+  static bool met_again(const DefinedSweep& first, const DefinedSweep& again);
   void fill(DefinedSweep& sweep, const Element& plain, const std::vector<Exclusion>& exclusions,
             const Context& context);
   void check_columns(const DefinedSweep& sweep, const Context& context);
@@ -115,6 +133,7 @@ class Expander {
 
   // expander_nodes.cpp
   void node(const Element& element, const Context& context);
+  void node_over_sweeps(const Element& element, const Context& context);
   std::vector<DefinedSweep*> sweeps_of(const Element& element, Context& context);
   bool check_shared_columns(const Attribute& over, const std::vector<DefinedSweep*>& sweeps,
                             const Context& context);
@@ -134,9 +153,12 @@ class Expander {
   std::map<std::string, std::unique_ptr<const Macro>, std::less<>> macros_;
   std::map<std::string, std::unique_ptr<DefinedSweep>, std::less<>> sweeps_;
   std::vector<const DefinedSweep*> sweep_order_;
+  std::map<Origin, std::pair<std::size_t, std::size_t>> made_;  // of result_.nodes: first and last + 1
   std::vector<const LoadedFile*> active_;  // files that are being expanded, each included by the one before
   std::vector<Exclusion>* exclusions_ = nullptr;  // of the sweep that is being expanded
   const Element* sweep_ = nullptr;                // that sweep
+  std::set<const Macro*> called_;
+  std::set<const Element*> unused_;  // those that are kept
   std::size_t elements_ = 0;
   Expansion result_;
 };

@@ -46,6 +46,11 @@ void Expander::include(const Element& element, const Context& context, Element* 
 const LoadedFile* Expander::included_file(const Element& plain, const Context& context) {
   const Attribute& attribute = *plain.find("file");
   if (attribute.failed) return nullptr;
+  if (trim(attribute.value).empty()) {
+    diagnostics_.error(attribute.value_place, "'file' names no file",
+                       "the path of a config, relative to this one");
+    return nullptr;
+  }
   const std::string including = attribute.value_place.file ? attribute.value_place.file->path : "";
   const std::string path = path_beside(including, attribute.value);
   try {

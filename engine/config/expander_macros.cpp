@@ -91,6 +91,7 @@ std::vector<Expander::MacroParameter> Expander::parameters(const Attribute& para
 void Expander::call(const Element& element, const Context& context, Element* parent) {
   const Macro* macro = check(element, "", context) ? find_macro(element, context) : nullptr;
   if (macro == nullptr) return leave_out(parent);
+  called_.insert(macro);
   check_depth(element, context);
   auto frame = std::make_shared<MacroFrame>();
   frame->macro = macro->name;
@@ -123,6 +124,7 @@ Context Expander::body_context(const Macro& macro, const Element& call, const Co
   Context body = context;
   body.scope = std::make_shared<Scope>(std::move(outer));
   body.depth = context.depth + 1;
+  body.way = std::make_shared<const Way>(Way{&call, context.way});
   std::shared_ptr<const TraceFrame> called = std::make_shared<const TraceFrame>(TraceFrame{
       fmt::format("in macro '{}' called at", macro.name), call.place.file, call.place.line, context.trace});
   // How expansion came to the macro's definition, unless the call came the same way.
@@ -210,6 +212,7 @@ void Expander::insert(const Element& element, const Context& context, Element* p
   inner.inside = context.inside;
   inner.names_unknown = context.names_unknown || frame.caller.names_unknown;
   inner.depth = context.depth + 1;
+  inner.way = std::make_shared<const Way>(Way{&element, context.way});
   check_depth(element, context);
   for (const Element* child : found->second) this->element(*child, inner, parent);
 }

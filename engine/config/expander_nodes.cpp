@@ -17,10 +17,36 @@ std::string point_text(const Point& point) {
   return join(parts);
 }
 
+bool same_content(const Element& a, const Element& b) {
+  const auto same_attribute = [](const Attribute& x, const Attribute& y) {
+    return x.name == y.name && x.value == y.value && x.failed == y.failed;
+  };
+  return a.name == b.name &&
+         std::equal(a.attributes.begin(), a.attributes.end(), b.attributes.begin(), b.attributes.end(),
+                    same_attribute) &&
+         std::equal(a.children.begin(), a.children.end(), b.children.begin(), b.children.end(), same_content);
+}
+
+bool same_node(const NodeElement& a, const NodeElement& b) {
+  return a.sweeps == b.sweeps && a.point == b.point && same_content(a.element, b.element);
+}
+
 }  // namespace
 
-/// A node of the experiment: one element for each point of the sweeps that it runs over.
+/// A node of the experiment. One that is met again because two files include its file is no second one.
 void Expander::node(const Element& element, const Context& context) {
+  std::vector<NodeElement>& nodes = result_.nodes;
+  const std::size_t begin = nodes.size();
+  node_over_sweeps(element, context);
+  const auto [before, added] = made_.try_emplace(Origin(element, context), begin, nodes.size());
+  if (added) return;
+  const auto at = [&](std::size_t i) { return nodes.begin() + static_cast<std::ptrdiff_t>(i); };
+  const auto [first, last] = before->second;
+  if (std::equal(at(first), at(last), at(begin), nodes.end(), same_node)) nodes.erase(at(begin), nodes.end());
+}
+
+/// One element for each point of the sweeps that the node runs over.
+void Expander::node_over_sweeps(const Element& element, const Context& context) {
   Context inner = context;
   inner.inside = true;
   const std::vector<DefinedSweep*> sweeps = sweeps_of(element, inner);
@@ -128,7 +154,7 @@ void Expander::node_at_point(const Element& element, const std::vector<DefinedSw
   Context inner = context;
   inner.columns = &columns;
   inner.scope = std::make_shared<Scope>(context.scope, &columns);
-  if (element.find("over") != nullptr && !wanted(element, inner)) return;
+  if (element.find("over") != nullptr && !wanted(element, inner)) return keep_unused(element, inner, "");
   made.element.name = element.name;
   made.element.place = traced(element.place, context);
   made.element.attributes.reserve(element.attributes.size());

@@ -57,19 +57,30 @@ void Expander::sweep(const Element& element, const Context& context) {
                        "letters, digits, '_' and '-' make an id");
     return leave_out(nullptr);
   }
-  const auto [before, added] = sweeps_.try_emplace(id->value, std::make_unique<DefinedSweep>());
-  DefinedSweep& made = *before->second;
-  if (!added) {
-    const Place& first = made.points.place;
-    if (first.file == plain.place.file && first.line == plain.place.line)
-      return;  // by way of a second include
-    diagnostics_.error(id->value_place, fmt::format("the sweep '{}' is defined a second time", id->value),
-                       fmt::format("it was defined at {}:{}:{}", first.file->path, first.line, first.column));
-    return leave_out(nullptr);
+  const auto known = sweeps_.find(id->value);
+  if (known != sweeps_.end() && known->second->failed) return leave_out(nullptr);  // once is enough
+  auto made = std::make_unique<DefinedSweep>();
+  made->origin = Origin(element, context);
+  made->points.id = id->value;
+  made->points.place = plain.place;
+  fill(*made, plain, exclusions, context);
+  const auto [before, added] = sweeps_.try_emplace(id->value, std::move(made));
+  if (added) {
+    if (!before->second->failed) sweep_order_.push_back(before->second.get());
+    return;
   }
-  made.points.id = id->value;
-  made.points.place = plain.place;
-  fill(made, plain, exclusions, context);
+  if (met_again(*before->second, *made)) return;
+  const Place& first = before->second->points.place;
+  diagnostics_.error(id->value_place, fmt::format("the sweep '{}' is defined a second time", id->value),
+                     fmt::format("it was defined at {}:{}:{}", first.file->path, first.line, first.column));
+  leave_out(nullptr);
+}
+
+/// Two files may include the same third one: the same sweep with the same points is no second one.
+bool Expander::met_again(const DefinedSweep& first, const DefinedSweep& again) {
+  if (first.origin != again.origin) return false;
+  return again.failed ||
+         (first.points.columns == again.points.columns && first.points.points == again.points.points);
 }
 
 void Expander::fill(DefinedSweep& sweep, const Element& plain, const std::vector<Exclusion>& exclusions,
@@ -88,7 +99,6 @@ void Expander::fill(DefinedSweep& sweep, const Element& plain, const std::vector
     for (std::size_t i = 0; i < row.size(); ++i) point.emplace_back(sweep.rows.columns[i], row[i].to_text());
     sweep.points.points.push_back(std::move(point));
   }
-  sweep_order_.push_back(&sweep);
 }
 
 /// A column may not hide an argument or a constant of the experiment.

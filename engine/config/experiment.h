@@ -48,6 +48,15 @@ struct InputFile {
   std::string hash;
 };
 
+/// What expansion left out, because of a condition or as a macro that nothing calls: it has no meaning, but
+/// its words are checked (check_unused).
+struct UnusedPart {
+  Element element;
+  std::string parent;              ///< the element that it stands in; empty: the top level
+  std::vector<std::string> names;  ///< that expressions in it can use
+  bool names_known = false;        ///< and there can be no others
+};
+
 /// A config after includes, arguments, macros, conditions and sweeps. The ids of nodes are unique (one
 /// element may stand for many points) and fit for file names.
 struct ExperimentConfig {
@@ -61,6 +70,7 @@ struct ExperimentConfig {
   std::vector<InputFile> files;
   std::vector<Override> overrides;               ///< those that this config took
   std::map<std::string, std::string> arguments;  ///< every declared argument with its final value
+  std::vector<UnusedPart> unused;                ///< of all passes of expansion
   /// False when a mistake may have left out nodes, sweeps or arguments: missing ones are then no mistakes of
   /// their own.
   bool complete = true;
@@ -86,6 +96,10 @@ ExperimentConfig expand(const std::string& path, const std::vector<Override>& ov
 /// nearest name, and those given twice.
 void check_overrides(const std::vector<ExperimentConfig>& experiments, const std::vector<Override>& overrides,
                      Diagnostics& diagnostics);
+
+/// Reports unknown elements and attributes, and expressions that mean nothing, in what expansion left out.
+/// Values are not worked out: they may make sense only where the part is used.
+void check_unused(const ExperimentConfig& experiment, Diagnostics& diagnostics);
 
 /// The flat file: expand() of its text gives the same experiment again.
 Element flat(const ExperimentConfig& experiment);

@@ -60,6 +60,8 @@ class Expression {
 
   /// Every name that the expression uses.
   std::vector<std::string> names() const;
+  /// Errors for the names that are not among `known`.
+  std::vector<ExpressionError> unknown_names(const std::vector<std::string>& known) const;
 
  private:
   explicit Expression(std::shared_ptr<const ExpressionNode> root) : root_(std::move(root)) {}

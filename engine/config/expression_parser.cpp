@@ -327,6 +327,15 @@ void collect_names(const ExpressionNode& node, std::vector<std::string>& names) 
   for (const Tree& child : node.children) collect_names(*child, names);
 }
 
+void collect_unknown(const ExpressionNode& node, const std::vector<std::string>& known,
+                     std::vector<ExpressionError>& errors) {
+  if (node.kind == Kind::name && std::find(known.begin(), known.end(), node.text) == known.end()) {
+    errors.emplace_back(node.offset, node.length, fmt::format("there is no name '{}'", node.text),
+                        suggestion(node.text, known));
+  }
+  for (const Tree& child : node.children) collect_unknown(*child, known, errors);
+}
+
 }  // namespace
 
 Expression Expression::parse(std::string_view text, std::size_t begin, std::size_t end) {
@@ -359,6 +368,12 @@ std::vector<std::string> Expression::names() const {
   std::vector<std::string> names;
   collect_names(*root_, names);
   return names;
+}
+
+std::vector<ExpressionError> Expression::unknown_names(const std::vector<std::string>& known) const {
+  std::vector<ExpressionError> errors;
+  collect_unknown(*root_, known, errors);
+  return errors;
 }
 
 }  // namespace coppice::config

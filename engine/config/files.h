@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,9 @@ class Files {
 
   /// The <arg> and <let> elements of all files.
   std::vector<const Element*> definitions() const;
+  /// Every name that the files define, for whatever values of their arguments: also those of sweep columns.
+  /// Nothing where a column's name is worked out, or a file that is named was not read.
+  std::optional<std::vector<std::string>> every_name() const;
 
  private:
   std::map<std::string, std::unique_ptr<const LoadedFile>> files_;  // by identity

@@ -64,12 +64,20 @@ struct PassedArguments {
 
 struct MacroFrame;
 
+/// The <call> and <insert> elements by which expansion came somewhere. Includes play no part: what a file
+/// says is the same by whichever include it is met.
+struct Way {
+  const Element* through = nullptr;
+  std::shared_ptr<const Way> outer;
+};
+
 /// Where expansion is: what names mean, how it came here, what may stand here.
 struct Context {
   std::shared_ptr<Scope> scope;
   const ColumnValues* columns = nullptr;    ///< of the node that is being expanded
   std::shared_ptr<const MacroFrame> macro;  ///< the call whose body this is; null outside of macros
   std::shared_ptr<const TraceFrame> trace;
+  std::shared_ptr<const Way> way;
   PassedArguments* passed = nullptr;  ///< by the <include> whose file this is
   bool inside = false;                ///< in a node or a sweep, where nothing global can be defined
   bool names_unknown = false;  ///< a mistake hides which names there are: unknown ones are not reported

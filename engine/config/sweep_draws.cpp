@@ -23,7 +23,8 @@ struct DrawnColumn {
   Value at(double u) const {
     if (!values.empty()) return values[static_cast<std::size_t>(u * static_cast<double>(values.size()))];
     const double top = integer ? high.value + 1 : high.value;
-    double x = low.value + u * (top - low.value);
+    const double width = top - low.value;
+    double x = std::isfinite(width) ? low.value + u * width : (1 - u) * low.value + u * top;
     if (logarithmic) {
       const double bottom = elementary::log(low.value);
       x = elementary::exp(bottom + u * (elementary::log(top) - bottom));

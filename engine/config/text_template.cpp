@@ -176,6 +176,17 @@ std::vector<std::string> TextTemplate::names() const {
   return all;
 }
 
+std::vector<ExpressionError> TextTemplate::mistakes(const std::vector<std::string>* known) const {
+  std::vector<ExpressionError> all;
+  for (const Piece& piece : pieces_) {
+    if (const auto* error = std::get_if<ExpressionError>(&piece)) all.push_back(*error);
+    const auto* expression = std::get_if<Expression>(&piece);
+    if (expression == nullptr || known == nullptr) continue;
+    for (ExpressionError& error : expression->unknown_names(*known)) all.push_back(std::move(error));
+  }
+  return all;
+}
+
 std::string escaped(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {

@@ -29,6 +29,10 @@ class TextTemplate {
   /// Every name that the expressions use.
   std::vector<std::string> names() const;
 
+  /// What is wrong whatever the values are: expressions that cannot be read, and with `known`, names that are
+  /// not among them.
+  std::vector<ExpressionError> mistakes(const std::vector<std::string>* known) const;
+
  private:
   using Piece = std::variant<std::string, Expression, ExpressionError>;
 
