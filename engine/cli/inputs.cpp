@@ -76,7 +76,7 @@ std::string nearest_path(const std::string& path) {
     if (near.empty()) return {};
     found /= near;
   }
-  return found.string();
+  return found == fs::path(path) ? "" : found.string();  // a broken link is near to itself
 }
 
 void require_file(const CommandLine& line, const std::string& argument) {
@@ -85,6 +85,10 @@ void require_file(const CommandLine& line, const std::string& argument) {
     throw line.error(argument, "'" + argument + "' is a folder, not a file");
   }
   if (fs::exists(argument, ignored)) return;
+  if (fs::is_symlink(fs::symlink_status(argument, ignored))) {
+    const std::string target = fs::read_symlink(argument, ignored).string();
+    throw line.error(argument, "'" + argument + "' is a link to '" + target + "', which is not there");
+  }
   const std::string near = nearest_path(argument);
   throw line.error(argument, "there is no file '" + argument + "'",
                    near.empty() ? "" : "did you mean '" + near + "'?");

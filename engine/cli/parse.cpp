@@ -42,6 +42,12 @@ std::vector<std::size_t> positional_words(const std::vector<std::string>& argume
   return words;
 }
 
+/// Also a broken link.
+bool is_there(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
+}
+
 bool looks_like_config(const std::string& word) {
   if (word.ends_with(".xml") || word.find(":=") != std::string::npos) return true;
   std::error_code ignored;
@@ -95,10 +101,12 @@ void find_subcommand(const CommandLine& line, std::vector<std::string>& rest, Re
   }
   if (family || request.command != nullptr) {
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(words[0]));
-  } else if (looks_like_config(first)) {
+    return;
+  }
+  const bool near_command = !nearest(first, valid_words("")).empty();
+  if (looks_like_config(first) || (!near_command && is_there(first))) {
     request.command = find_command("run");
   } else {
-    const bool near_command = !nearest(first, valid_words("")).empty();
     const std::string file = near_command ? "" : nearest_path(first);
     throw line.error(first, "there is no subcommand '" + first + "', and no config file of this name",
                      file.empty() ? suggestion(first, valid_words("")) : "did you mean '" + file + "'?");

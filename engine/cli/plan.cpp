@@ -21,6 +21,7 @@ using Statuses = std::vector<NodeStatus>;
 struct Counts {
   std::size_t runs = 0;
   std::size_t nodes = 0;  ///< without definitions
+  std::size_t selected = 0;
 };
 
 Counts count(const Plan& plan, const Statuses& statuses) {
@@ -28,6 +29,8 @@ Counts count(const Plan& plan, const Statuses& statuses) {
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
     counts.nodes += plan.nodes[i].definition ? 0 : 1;
     counts.runs += statuses[i].runs ? 1 : 0;
+    const bool out = plan.nodes[i].definition || statuses[i].reason == Reason::not_selected;
+    counts.selected += out ? 0 : 1;
   }
   return counts;
 }
@@ -42,6 +45,8 @@ std::string text(const Plan& plan, const Statuses& statuses, int threads) {
                     to_text(statuses[i])});
   }
   const Counts counts = count(plan, statuses);
+  if (counts.nodes > 0 && counts.selected == 0)
+    return plan.experiment.name + ": none of its nodes is selected\n";
   std::string head =
       fmt::format("{}: {} of {} to run", plan.experiment.name, counts.runs, counted(counts.nodes, "node"));
   if (const std::optional<double> total = predicted_total(statuses, threads); total && counts.runs > 0) {
@@ -136,8 +141,11 @@ struct PlanCommand : ConfigInputs, SelectionInputs {
     int threads = thread_count(line, jobs);
     if (threads == 0) threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     Json all = Json::array();
-    for (const Plan& plan : plan_all(line, *this)) {
-      const Statuses statuses = inspect(plan, selection(), out);
+    const std::vector<Plan> plans = plan_all(line, *this);
+    const Selection selected = selection(line);
+    check_selection(plans, selected);
+    for (const Plan& plan : plans) {
+      const Statuses statuses = inspect(plan, selected, out);
       if (as_json) {
         all.push_back(json(plan, statuses, threads));
       } else {

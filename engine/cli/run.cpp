@@ -69,19 +69,27 @@ struct Run : ConfigInputs, SelectionInputs {
     if (keep_going && fail_fast)
       throw line.error("--fail-fast", "'--keep-going' and '--fail-fast' exclude each other");
     watch_interrupts();
-    const std::vector<Plan> plans = plan_all(line, *this);
+    std::vector<Plan> plans = plan_all(line, *this);
+    const Selection selected = selection(line);
+    check_selection(plans, selected);
+    const bool talks = progress == "auto" || progress == "plain";
+    std::erase_if(plans, [&](const Plan& plan) {
+      const bool none = !selects_any(plan, selected);
+      if (none && talks) console.say(plan.experiment.name + ": none of its nodes is selected\n");
+      return none;
+    });
     const std::unique_ptr<RunListener> listener = make_progress(progress, console, interrupt_requested());
     RunOptions options;
     options.out = out;
     options.threads = thread_count(line, jobs);
-    options.selection = selection();
+    options.selection = selected;
     options.fail_fast = fail_fast;
     options.stop = &interrupt_requested();
     options.listener = listener.get();
     options.command = line.arguments();
     options.page = write_reports;
     const RunOutcome outcome = coppice::run(plans, options);
-    if (progress == "auto" || progress == "plain") console.say(summary(console, outcome));
+    if (talks) console.say(summary(console, outcome));
     for (const Plan& plan : plans) console.offer(published_files(plan, out));
     return outcome.interrupted ? kInterrupted : outcome.failures.empty() ? kDone : kFailed;
   }

@@ -15,7 +15,7 @@ struct SelectionInputs {
   std::vector<std::string> only;
   std::vector<std::string> force;
 
-  Selection selection() const;
+  Selection selection(const CommandLine& line) const;
 };
 
 /// Declares --out, --only and --force; T derives from SelectionInputs.

@@ -166,6 +166,7 @@ std::size_t up_to_date(const Workspaces& workspaces) {
 
 RunOutcome run(const std::vector<Plan>& plans, const RunOptions& given) {
   const RunOptions options = completed(given);
+  check_selection(plans, options.selection);
   Workspaces workspaces = open_workspaces(plans, options);
   std::vector<FolderUpdate> updates;
   for (const auto& workspace : workspaces) {

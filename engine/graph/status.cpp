@@ -59,12 +59,11 @@ struct Selected {
 
   Selected(const Plan& plan, const Selection& selection)
       : in(plan.nodes.size(), selection.only.empty()), forced(plan.nodes.size(), false) {
-    for (const std::string& id : selection.only) mark(plan, id, in);
-    for (const std::string& id : selection.force) mark(plan, id, forced);
+    for (const SelectedNode& node : selection.only) mark(plan, node.id, in);
+    for (const SelectedNode& node : selection.force) mark(plan, node.id, forced);
     for (std::size_t i = plan.nodes.size(); i-- > 0;) {  // what a wanted node needs is wanted
       if (in[i]) each_input(plan.nodes[i], [&](std::size_t input) { in[input] = true; });
     }
-    for (const std::string& id : selection.force) check_wanted(plan, id);
     for (std::size_t i = 0; i < plan.nodes.size(); ++i) {  // what depends on a forced node is forced
       each_input(plan.nodes[i], [&](std::size_t input) { forced[i] = forced[i] || forced[input]; });
     }
@@ -72,16 +71,7 @@ struct Selected {
 
  private:
   static void mark(const Plan& plan, const std::string& id, std::vector<bool>& marks) {
-    const std::vector<std::size_t> found = plan.find(id);
-    if (found.empty()) unknown_id(plan, id);
-    for (const std::size_t i : found) marks[i] = true;
-  }
-
-  /// To force what the selection leaves out would do nothing.
-  void check_wanted(const Plan& plan, const std::string& id) const {
-    const std::vector<std::size_t> found = plan.find(id);
-    if (std::any_of(found.begin(), found.end(), [this](std::size_t i) { return in[i]; })) return;
-    throw ConfigError(fmt::format("'{}' is forced, and not among the nodes selected nor what they need", id));
+    for (const std::size_t i : plan.find(id)) marks[i] = true;
   }
 
   template <class F>
@@ -215,6 +205,45 @@ std::string to_text(const NodeStatus& status) {
   }
   if (status.changes.size() > kShown) text += fmt::format(", and {} more", status.changes.size() - kShown);
   return text;
+}
+
+void check_selection(const std::vector<Plan>& plans, const Selection& selection) {
+  Diagnostics diagnostics;
+  std::vector<std::string> known;
+  for (const Plan& plan : plans) {
+    for (std::string& id : plan.ids()) known.push_back(std::move(id));
+  }
+  const auto check_known = [&](const SelectedNode& node) {
+    const bool found = std::any_of(plans.begin(), plans.end(),
+                                   [&](const Plan& plan) { return !plan.find(node.id).empty(); });
+    if (found) return;
+    const std::string where =
+        plans.size() == 1
+            ? fmt::format("'{}' is no node of the experiment '{}'", node.id, plans.front().experiment.name)
+            : fmt::format("'{}' is no node of any of the experiments", node.id);
+    diagnostics.error(node.place, where, suggestion(node.id, known));
+  };
+  std::for_each(selection.only.begin(), selection.only.end(), check_known);
+  std::for_each(selection.force.begin(), selection.force.end(), check_known);
+  diagnostics.throw_if_any();
+  for (const SelectedNode& node : selection.force) {  // to force what is left out would do nothing
+    const bool wanted = std::any_of(plans.begin(), plans.end(), [&](const Plan& plan) {
+      const std::vector<bool> in = Selected(plan, selection).in;
+      const std::vector<std::size_t> found = plan.find(node.id);
+      return std::any_of(found.begin(), found.end(), [&](std::size_t i) { return in[i]; });
+    });
+    if (wanted) continue;
+    diagnostics.error(
+        node.place,
+        fmt::format("'{}' is forced, and not among the nodes selected nor what they need", node.id));
+  }
+  diagnostics.throw_if_any();
+}
+
+bool selects_any(const Plan& plan, const Selection& selection) {
+  return selection.only.empty() ||
+         std::any_of(selection.only.begin(), selection.only.end(),
+                     [&](const SelectedNode& node) { return !plan.find(node.id).empty(); });
 }
 
 std::vector<NodeStatus> inspect(const Plan& plan, const Selection& selection,

@@ -40,15 +40,30 @@ struct NodeStatus {
 /// The reason in words: "changed: solver.trees: 25 -> 50", "up to date", ...
 std::string to_text(const NodeStatus& status);
 
-/// Which nodes the user asked for.
-struct Selection {
-  std::vector<std::string> only;   ///< ids: these and what they need; empty: all
-  std::vector<std::string> force;  ///< ids: run again, with what depends on them
+/// A node that the user asked for, by its id or name, and where.
+struct SelectedNode {
+  std::string id;
+  Place place;
+
+  SelectedNode(std::string name, Place where = {}) : id(std::move(name)), place(std::move(where)) {}
+  SelectedNode(const char* name) : id(name) {}
 };
 
+/// Which nodes the user asked for. Of several configs each has those that it knows.
+struct Selection {
+  std::vector<SelectedNode> only;   ///< these and what they need; empty: all
+  std::vector<SelectedNode> force;  ///< run again, with what depends on them
+};
+
+/// Throws ConfigError for every node that none of the configs has, with the nearest, and for those forced
+/// that are left out wherever they are.
+void check_selection(const std::vector<Plan>& plans, const Selection& selection);
+
+/// Whether the selection leaves any node of this config in.
+bool selects_any(const Plan& plan, const Selection& selection);
+
 /// The state of every node of the plan in the output folder `out`. Reads only: dates of files, and the whole
-/// of those that a node that runs will read, which therefore are what was stored. Throws ConfigError for an
-/// id that does not exist, with the nearest.
+/// of those that a node that runs will read, which therefore are what was stored.
 std::vector<NodeStatus> inspect(const Plan& plan, const Selection& selection,
                                 const std::filesystem::path& out);
 
