@@ -180,6 +180,11 @@ class SchemaWriter {
       const auto choice = xml_.open("xs:choice");
       for (const std::string& child : element.children)
         write_language_element(find_element(language_, child, element.name), name);
+      for (const LanguageElement& other : language_.elements) {  // what is replaced by others when reading
+        const bool declared =
+            std::find(element.children.begin(), element.children.end(), other.name) != element.children.end();
+        if (other.in_components && !declared) write_language_element(other, name);
+      }
     }
   }
 
