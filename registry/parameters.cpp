@@ -149,6 +149,11 @@ std::string missing_file_hint(const std::filesystem::path& path, const std::file
 
 }  // namespace
 
+std::string path_of_file(const Attribute& attribute) {
+  const std::filesystem::path given(trim(attribute.value));
+  return std::filesystem::absolute(base_folder(attribute.value_place) / given).lexically_normal().string();
+}
+
 void Reader::error(const Place& place, std::string message, std::string hint,
                    std::vector<std::string> notes) {
   diagnostics_->error(place, std::move(message), std::move(hint), std::move(notes));
@@ -234,7 +239,7 @@ bool read_value(const ParameterInfo& info, const Attribute& attribute, Reader& r
   }
   const std::filesystem::path given(item.text);
   std::error_code ignored;
-  const auto path = std::filesystem::absolute(base_folder(attribute.value_place) / given).lexically_normal();
+  const std::filesystem::path path = path_of_file(attribute);
   if (std::filesystem::is_directory(path, ignored)) {
     return item.fail(fmt::format("'{}' is a folder, not a file", item.text), info.doc);
   }

@@ -45,6 +45,9 @@ struct FilePath {
   std::string path;
 };
 
+/// The absolute path of the file that an attribute names.
+std::string path_of_file(const Attribute& attribute);
+
 /// The id of another node, and what that node must make ("problem", "policy", "dataset", ...).
 struct Reference {
   std::string id;

@@ -66,6 +66,16 @@ std::string normalized(std::string_view bytes) {
   return text;
 }
 
+/// The text that the bytes of a file are.
+std::string text_of(const std::string& bytes, const Place& place) {
+  if (trim(bytes).empty()) fail(place, "the file is empty");
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
+    fail(place, "the file is UTF-16 text", "save it as UTF-8");
+  }
+  if (bytes.find('\0') != std::string::npos) fail(place, "the file is binary, not text");
+  return normalized(bytes);
+}
+
 /// Gives the parser's elements the places that the scanner found; both go through the text in the same order.
 class Builder {
  public:
@@ -142,19 +152,22 @@ const Element* Element::child(std::string_view child_name) const {
 }
 
 std::shared_ptr<const SourceFile> read_source(const std::string& path, std::size_t largest) {
-  auto source = std::make_shared<SourceFile>();
-  source->path = path;
+  const auto source = std::make_shared<SourceFile>(SourceFile{path, {}});
   const Place place{source, 0, 0, 1, nullptr};
   const std::string bytes = read_bytes(path, place, largest);
   if (bytes.size() > largest) {
     fail(place, fmt::format("the file is larger than {} MiB, the most that is read", largest >> 20u));
   }
-  if (trim(bytes).empty()) fail(place, "the file is empty");
-  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
-    fail(place, "the file is UTF-16 text", "save it as UTF-8");
-  }
-  if (bytes.find('\0') != std::string::npos) fail(place, "the file is binary, not text");
-  source->text = normalized(bytes);
+  source->text = text_of(bytes, place);
+  return source;
+}
+
+std::shared_ptr<const SourceFile> read_head(const std::string& path, std::size_t enough) {
+  const auto source = std::make_shared<SourceFile>(SourceFile{path, {}});
+  const Place place{source, 0, 0, 1, nullptr};
+  std::string bytes = read_bytes(path, place, enough);
+  if (bytes.size() > enough) bytes.resize(bytes.rfind('\n') + 1);  // to 0 where there is none
+  source->text = text_of(bytes, place);
   return source;
 }
 

@@ -42,6 +42,9 @@ struct Element {
 std::shared_ptr<const SourceFile> read_source(const std::string& path,
                                               std::size_t largest = std::size_t{64} << 20);
 
+/// The whole lines within the first `enough` bytes of a file or a little more; else as read_source.
+std::shared_ptr<const SourceFile> read_head(const std::string& path, std::size_t enough);
+
 /// Parses the root element of a text, refusing what XML forbids and tinyxml2 lets pass: a second root, text
 /// after the root, entities other than the five, DOCTYPE; also text between elements. Throws ConfigError.
 Element parse_xml(const std::shared_ptr<const SourceFile>& source);

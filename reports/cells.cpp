@@ -9,6 +9,7 @@
 
 #include "engine/data/csv.h"
 #include "registry/suggest.h"
+#include "registry/units.h"
 
 namespace coppice {
 namespace {
@@ -20,6 +21,11 @@ std::string value_of(const Entry& entry, std::string_view name) {
     if (label == name) return value;
   }
   return {};
+}
+
+std::string unit_of(const Entry& entry, const std::string& name) {
+  const auto unit = entry.units.find(name);
+  return unit == entry.units.end() ? "" : unit->second;
 }
 
 void check_keys(const std::vector<Entry>& entries, const TableKeys& keys) {
@@ -104,16 +110,19 @@ std::vector<Entry> entries_of(const std::vector<InputNode>& nodes) {
   std::vector<Entry> entries;
   for (const InputNode& node : nodes) {
     std::vector<PointValue> names = node.labels;
+    std::map<std::string, std::string> units = node.units;
     names.emplace_back("node", node.id);
     for (std::size_t i = 0; i < node.point.size() && i < names.size(); ++i) {
       const auto taken = [&](const PointValue& later) {
         return later.first == names[i].first && later.second != names[i].second;
       };
       if (std::any_of(names.begin() + static_cast<std::ptrdiff_t>(i) + 1, names.end(), taken)) {
+        if (auto unit = units.extract(names[i].first))
+          units.emplace(kRenamed + names[i].first, unit.mapped());
         names[i].first = kRenamed + names[i].first;
       }
     }
-    entries.push_back({std::move(names), node.replicate});
+    entries.push_back({std::move(names), node.replicate, std::move(units)});
   }
   return entries;
 }
@@ -135,6 +144,7 @@ std::vector<TableCell> arrange(const std::vector<Entry>& entries, const TableKey
     if (cell.entries.empty()) {
       cell.keys = std::move(row);
       cell.keys.insert(cell.keys.end(), column.begin(), column.end());
+      for (const std::string& name : keys.all()) cell.units.push_back(unit_of(entries[i], name));
     }
     cell.entries.push_back(i);
   }
@@ -152,7 +162,12 @@ void add_key_columns(Table& table, const TableKeys& keys, const std::vector<Tabl
   for (std::size_t k = 0; k < names.size(); ++k) {
     const ColumnInfo::Type type = type_of_keys(cells, k);
     const bool of_row = k < keys.rows.size();
-    table.columns.push_back({names[k], type, "", of_row ? "Key of the row." : "Key of the column."});
+    const auto with_unit = [k](const TableCell& cell) {
+      return k < cell.units.size() && !cell.units[k].empty();
+    };
+    const auto cell = std::find_if(cells.begin(), cells.end(), with_unit);
+    table.columns.push_back({names[k], type, cell == cells.end() ? "" : cell->units[k],
+                             of_row ? "Key of the row." : "Key of the column."});
     for (std::size_t i = 0; i < cells.size(); ++i) table.rows[i].push_back(key_cell(cells[i].keys[k], type));
   }
 }
@@ -171,8 +186,10 @@ std::string key_column(const Table& table, const std::string& key) {
 
 bool same_key(std::string_view a, std::string_view b) {
   if (a == b) return true;
-  const std::optional<double> x = parse_number(a), y = parse_number(b);
-  return x && y && *x == *y;
+  const std::optional<Quantity> x = parse_quantity(a), y = parse_quantity(b);
+  if (!x || !y || x->value != y->value) return false;
+  const Dimension plain{};  // labels are in SI units without saying so
+  return x->dimension == y->dimension || x->dimension == plain || y->dimension == plain;
 }
 
 }  // namespace coppice

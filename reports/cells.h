@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,7 @@ struct Entry {
   /// called sweep_<name>, as in evaluations.
   std::vector<PointValue> names;
   std::optional<int> replicate;
+  std::map<std::string, std::string> units = {};  ///< of those names whose values are quantities
 };
 std::vector<Entry> entries_of(const std::vector<InputNode>& nodes);
 
@@ -30,7 +32,8 @@ struct TableKeys {
 /// What belongs to one combination of keys.
 struct TableCell {
   std::vector<std::string> keys;  ///< one for each of TableKeys::all(); empty where entries have no such name
-  std::vector<std::size_t> entries;  ///< replicates of one and the same thing
+  std::vector<std::size_t> entries;     ///< replicates of one and the same thing
+  std::vector<std::string> units = {};  ///< SI units of the keys; empty where they are no quantities
 };
 
 /// Sorts entries into cells; these stand in the order in which their row's keys appear first, then their
@@ -47,7 +50,7 @@ void rename_taken_keys(Table& table, std::size_t keys);
 /// The name that the key's column has in such a table.
 std::string key_column(const Table& table, const std::string& key);
 
-/// Equal texts, or equal numbers.
+/// Equal texts, or equal numbers; "10 deg" and 0.174... are the same angle.
 bool same_key(std::string_view a, std::string_view b);
 
 }  // namespace coppice

@@ -87,6 +87,14 @@ struct CompareNode : Node {
     return join({cell.keys.begin() + static_cast<std::ptrdiff_t>(within.size()), cell.keys.end()}, ", ");
   }
 
+  /// The baseline may be written as the config has it: "10 deg" is the angle that tables show in radians.
+  bool is_baseline(const TableCell& cell) const {
+    if (name(cell) == baseline) return true;
+    const std::vector<std::string_view> items = split_list(baseline);
+    const auto first = cell.keys.begin() + static_cast<std::ptrdiff_t>(within.size());
+    return std::equal(first, cell.keys.end(), items.begin(), items.end(), same_key);
+  }
+
   Arrangement arranged(const NodeContext& context) const {
     Arrangement what;
     what.cells = arrange(entries_of(context.inputs("of")), {within, by, "by and within"});
@@ -100,14 +108,15 @@ struct CompareNode : Node {
       names.push_back(name(what.cells[i]));
       for (std::size_t j = i + 1; j < what.cells.size(); ++j) {
         if (group(i) != group(j)) continue;
-        if (baseline.empty() || name(what.cells[j]) == baseline) {
+        if (baseline.empty() || is_baseline(what.cells[j])) {
           what.pairs.push_back({i, j});
-        } else if (names.back() == baseline) {
+        } else if (is_baseline(what.cells[i])) {
           what.pairs.push_back({j, i});
         }
       }
     }
-    if (!baseline.empty() && std::find(names.begin(), names.end(), baseline) == names.end()) {
+    const auto is_it = [&](const TableCell& cell) { return is_baseline(cell); };
+    if (!baseline.empty() && std::none_of(what.cells.begin(), what.cells.end(), is_it)) {
       throw std::invalid_argument(
           fmt::format("baseline: nothing here is called '{}'; {}", baseline, suggestion(baseline, names)));
     }

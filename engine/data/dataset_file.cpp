@@ -16,6 +16,9 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
+/// Names that begin so are those of axes.
+const std::vector<std::string> kAxisPrefixes = {"s_", "a_", "n_"};
+
 /// What the cells of a column must be.
 enum class CellKind { number, optional_number, count, flag };
 
@@ -246,10 +249,16 @@ void write_dataset(const std::filesystem::path& file, const Dataset& dataset) {
   write_schema(file, schema);
 }
 
+void check_dataset_header(std::shared_ptr<const SourceFile> source, const Spaces& spaces) {
+  const CsvReader reader(std::move(source));
+  std::vector<Wanted> columns = dataset_columns(spaces);
+  locate(columns, reader, kAxisPrefixes);
+}
+
 Dataset read_dataset(const std::filesystem::path& file, const Spaces& spaces) {
   CsvReader reader(read_source(file.string(), kLargestTable));
   std::vector<Wanted> columns = dataset_columns(spaces);
-  locate(columns, reader, {"s_", "a_", "n_"});
+  locate(columns, reader, kAxisPrefixes);
   const std::size_t states = spaces.state_size();
   const std::size_t id = 2 + states;
   const std::size_t reward = id + 1 + spaces.widest_action();

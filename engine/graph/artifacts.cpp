@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "registry/text.h"
@@ -73,6 +74,11 @@ std::shared_ptr<const Problem> load_problem(const InputNode& node) {
   return made_component<Problem>(node.element.children.front()).object;
 }
 
+std::shared_ptr<const Spaces> load_spaces(const InputNode& node) {
+  const std::shared_ptr<const Problem> problem = load_problem(node);
+  return {problem, &problem->spaces()};
+}
+
 MadePolicy load_policy(const InputNode& node, const Problem& problem) {
   MadePolicy policy;
   if (const Element* configured = configured_policy(node)) {
@@ -82,6 +88,8 @@ MadePolicy load_policy(const InputNode& node, const Problem& problem) {
     const bool general = file.spaces.actions.empty();  // saved without a problem
     if (!general) require_same_axes(file.spaces, problem.spaces(), fmt::format("policy '{}'", node.id));
     policy = make_policy(file);
+  } else if (node.spaces) {
+    require_same_axes(*node.spaces, problem.spaces(), fmt::format("policy '{}'", node.id));
   }
   if (policy) policy.object->prepare(problem.spaces(), problem.simulator());
   return policy;
@@ -93,6 +101,17 @@ std::string common_origin(const InputNode& a, const InputNode& b) {
   const std::string_view file = a.element.get("file");  // of datasets, which draw nothing
   const bool same_file = a.streams.empty() && !file.empty() && file == b.element.get("file");
   return same_file ? "are the same file" : "";
+}
+
+void require_samples_of(const InputNode& node, const Problem& problem) {
+  if (node.spaces) return require_same_axes(*node.spaces, problem.spaces(), fmt::format("'{}'", node.id));
+  if (node.columns.empty()) return;  // not known
+  for (const std::string& column : dataset_column_names(problem.spaces())) {
+    if (std::find(node.columns.begin(), node.columns.end(), column) != node.columns.end()) continue;
+    throw std::invalid_argument(
+        fmt::format("'{}' has no column '{}', which samples of the problem have; it has {}", node.id, column,
+                    join(node.columns)));
+  }
 }
 
 Dataset load_dataset(const InputNode& node, const Spaces& spaces) {

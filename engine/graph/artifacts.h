@@ -31,13 +31,20 @@ inline constexpr std::string_view kTableFile = "table.csv";  ///< of nodes that 
 /// The problem of a `problem` node, made from its element.
 std::shared_ptr<const Problem> load_problem(const InputNode& node);
 
+/// The spaces of the problem of a `problem` node.
+std::shared_ptr<const Spaces> load_spaces(const InputNode& node);
+
 /// The policy of a node that makes one (policy, train, select), prepared for the problem. While checking, a
-/// learned policy is not there yet: null.
+/// learned policy is not there yet: null, after a look at what is known of it.
 MadePolicy load_policy(const InputNode& node, const Problem& problem);
 
 /// Why two datasets say the same twice, as "come from the same draws (collect 0)"; empty when they do not, as
 /// far as is known.
 std::string common_origin(const InputNode& a, const InputNode& b);
+
+/// What of a dataset's node is known when planning: throws std::invalid_argument when it is of another
+/// problem.
+void require_samples_of(const InputNode& node, const Problem& problem);
 
 /// The dataset of a node that makes one.
 Dataset load_dataset(const InputNode& node, const Spaces& spaces);

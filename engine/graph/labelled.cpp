@@ -18,17 +18,17 @@ struct Label {
   Cell cell;
 };
 
-Label label(std::string name, const std::string& value, std::string doc) {
+Label label(std::string name, const std::string& value, const std::string& unit, std::string doc) {
   std::int64_t integer = 0;
   const char* end = value.data() + value.size();
   if (const auto read = std::from_chars(value.data(), end, integer);
       read.ptr == end && read.ec == std::errc() && std::to_string(integer) == value) {
-    return {{std::move(name), Type::integer, "", std::move(doc)}, integer};
+    return {{std::move(name), Type::integer, unit, std::move(doc)}, integer};
   }
   double number = 0;
   if (const auto read = std::from_chars(value.data(), end, number);
       read.ptr == end && read.ec == std::errc() && std::isfinite(number)) {
-    return {{std::move(name), Type::number, "", std::move(doc)}, number};
+    return {{std::move(name), Type::number, unit, std::move(doc)}, number};
   }
   return {{std::move(name), Type::text, "", std::move(doc)}, value};
 }
@@ -44,6 +44,7 @@ std::vector<PointValue> distinct_labels(const NodeLabels& node) {
 
 void add_labels(std::string& text, const NodeLabels& labels) {
   for (const auto& [name, value] : labels.columns) add_line(text, name, value);
+  for (const auto& [name, unit] : labels.units) add_line(text, name + ".unit", unit);
   add_line(text, "replicate", labels.replicate ? std::to_string(*labels.replicate) : "");
 }
 
@@ -59,7 +60,9 @@ Table label_columns(const Table& table, const NodeLabels& node) {
     const bool taken =
         sweep && (table.has(name) || name == "replicate" ||
                   std::any_of(given.begin() + static_cast<std::ptrdiff_t>(i) + 1, given.end(), same));
+    const auto unit = sweep ? node.units.find(name) : node.units.end();
     labels.push_back(label(taken ? "sweep_" + name : name, value,
+                           unit == node.units.end() ? "" : unit->second,
                            sweep ? "Sweep column '" + name + "'." : "Id of the " + name + "."));
   }
   labels.push_back({{"replicate", Type::integer, "", "Number of the independent repetition, from 0."}, {}});
@@ -88,7 +91,7 @@ Table side_by_side(Table names, const Table& table) {
 }  // namespace
 
 NodeLabels labels_of(const PlannedNode& node) {
-  return {node.labels, node.point.size(), node.replicate};
+  return {node.labels, node.point.size(), node.replicate, node.units};
 }
 
 std::string labels_hash(const PlannedNode& node) {

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +13,7 @@
 #include "engine/vocabulary/archive.h"
 #include "engine/vocabulary/parallel.h"
 #include "engine/vocabulary/random.h"
+#include "engine/vocabulary/space.h"
 #include "registry/component.h"
 
 namespace coppice {
@@ -41,12 +44,14 @@ struct InputNode {
   Element element;               ///< resolved
   std::filesystem::path folder;  ///< its files and timing.csv; empty for definitions and while checking
   std::string key;
-  std::vector<PointValue> labels;    ///< columns that name it in tables: sweep columns, "problem", "policy"
-  std::vector<std::string> streams;  ///< streams of draws it depends on ("collect 0"), its own first
-  std::vector<std::string> makes;    ///< as Node::makes
+  std::vector<PointValue> labels;  ///< columns that name it in tables: sweep columns, "problem", "policy"
+  std::map<std::string, std::string> units;  ///< SI units of the labels that are quantities
+  std::vector<std::string> streams;          ///< streams of draws it depends on ("collect 0"), its own first
+  std::vector<std::string> makes;            ///< as Node::makes
   std::string training;  ///< key of the training run whose policy it is about; empty: nothing was learned
   std::vector<std::string> columns;           ///< as Node::dataset_columns
   std::vector<std::string> progress_columns;  ///< as Node::progress_columns
+  std::shared_ptr<const Spaces> spaces;       ///< as Node::spaces
 };
 
 /// What a node sees while it is checked and while it runs.
@@ -125,6 +130,9 @@ class Node : public NodeOptions {
   virtual std::vector<std::string> dataset_columns(const NodeContext&) const { return {}; }
   /// The same of its progress.
   virtual std::vector<std::string> progress_columns(const NodeContext&) const { return {}; }
+  /// Spaces of the problem that the policy or the dataset it makes is for, as far as they are known when
+  /// planning; null: unknown, or of any.
+  virtual std::shared_ptr<const Spaces> spaces(const NodeContext&) const { return nullptr; }
   /// Checks that need the inputs' elements. Throws std::invalid_argument or ConfigError; called when
   /// planning.
   virtual void check(const NodeContext&) const {}

@@ -22,7 +22,15 @@ void check_name(const ExperimentConfig& experiment, Diagnostics& diagnostics) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
            std::string_view("_-.").find(c) != std::string_view::npos;
   };
-  const bool plain = !name.empty() && name.size() <= 128 && name.front() != '.' && name.front() != '-' &&
+  constexpr std::size_t kLongest = 128;
+  if (name.size() > kLongest) {
+    diagnostics.error(
+        experiment.place,
+        fmt::format("the name of the experiment has {} characters: '{}...'", name.size(), name.substr(0, 20)),
+        fmt::format("a folder is named after it: at most {}", kLongest));
+    return;
+  }
+  const bool plain = !name.empty() && name.front() != '.' && name.front() != '-' &&
                      std::all_of(name.begin(), name.end(), allowed);
   if (!plain || name == "store" || name == "index.sqlite") {
     diagnostics.error(experiment.place, fmt::format("name=\"{}\" cannot be the name of a folder", name),
@@ -30,9 +38,50 @@ void check_name(const ExperimentConfig& experiment, Diagnostics& diagnostics) {
   }
 }
 
+/// The elements as they were written, by those that the planned nodes have.
+using WrittenElements = std::map<const Element*, const Element*>;
+
+WrittenElements written_elements(const Declarations& declarations) {
+  WrittenElements written;
+  for (const DeclaredNode& node : declarations.nodes) {
+    for (const DeclaredElement& element : node.elements) written[element.resolved.get()] = element.written;
+  }
+  return written;
+}
+
+/// The attribute by which an element, or one inside it, names a file; null when none does.
+const Attribute* attribute_naming(const Element& element, const std::string& path) {
+  for (const Attribute& attribute : element.attributes) {
+    if (attribute.value_place.file && path_of_file(attribute) == path) return &attribute;
+  }
+  for (const Element& child : element.children) {
+    if (const Attribute* found = attribute_naming(child, path)) return found;
+  }
+  return nullptr;
+}
+
+/// A mistake in a file that the element names stands where it names it; one at a place in the file stays
+/// there.
+void report(Diagnostic mistake, const PlannedNode& node, const Element& written, Diagnostics& diagnostics) {
+  const Attribute* naming =
+      mistake.place.file ? attribute_naming(written, mistake.place.file->path) : nullptr;
+  if (!mistake.place.file) {
+    mistake.place = node.place;
+  } else if (naming != nullptr && mistake.place.line == 0) {
+    mistake.message = fmt::format("{}: {}", naming->value, mistake.message);
+    mistake.place = naming->value_place;
+  } else if (naming != nullptr) {
+    const Place& place = naming->value_place;
+    mistake.notes.push_back(
+        fmt::format("named by '{}' at {}:{}:{}", naming->name, place.file->path, place.line, place.column));
+  }
+  diagnostics.error(mistake.place, std::move(mistake.message), std::move(mistake.hint),
+                    std::move(mistake.notes));
+}
+
 /// Lets every node check itself with the elements of its inputs; replicates differ in nothing that it could
 /// check.
-void check_nodes(Plan& plan, Diagnostics& diagnostics) {
+void check_nodes(Plan& plan, const WrittenElements& written, Diagnostics& diagnostics) {
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
     PlannedNode& node = plan.nodes[i];
     if (node.replicate.value_or(0) != 0) continue;
@@ -41,12 +90,10 @@ void check_nodes(Plan& plan, Diagnostics& diagnostics) {
       node.node->check(context);
       node.columns = node.node->dataset_columns(context);
       node.progress_columns = node.node->progress_columns(context);
+      node.spaces = node.node->spaces(context);
     } catch (const ConfigError& error) {
-      for (Diagnostic diagnostic : error.diagnostics()) {
-        const Place& place = diagnostic.place.file ? diagnostic.place : node.place;
-        diagnostics.error(place, std::move(diagnostic.message), std::move(diagnostic.hint),
-                          std::move(diagnostic.notes));
-      }
+      for (const Diagnostic& mistake : error.diagnostics())
+        report(mistake, node, *written.at(node.resolved.get()), diagnostics);
     } catch (const std::invalid_argument& broken) {
       diagnostics.error(node.place, fmt::format("<{}>: {}", node.kind, broken.what()));
     } catch (const std::runtime_error& broken) {
@@ -117,6 +164,7 @@ class KeyWriter {
 
   static void add_labels(std::string& text, const std::string& name, const PlannedNode& input) {
     for (const auto& [label, value] : input.labels) add_line(text, name + ".label." + label, value);
+    for (const auto& [label, unit] : input.units) add_line(text, name + ".unit." + label, unit);
     if (input.replicate) add_line(text, name + ".label.replicate", std::to_string(*input.replicate));
   }
 
@@ -148,9 +196,7 @@ void compute_keys(Plan& plan, Diagnostics& diagnostics) {
 /// From here on the experiment's elements are the resolved ones.
 void resolve_elements(const Declarations& declarations, ExperimentConfig& experiment) {
   std::map<const Element*, const Element*> resolved;
-  for (const DeclaredNode& node : declarations.nodes) {
-    for (const DeclaredElement& element : node.elements) resolved[element.written] = element.resolved.get();
-  }
+  for (const auto& [made, written] : written_elements(declarations)) resolved[written] = made;
   for (NodeElement& node : experiment.nodes) {
     const auto found = resolved.find(&node.element);
     if (found != resolved.end()) node.element = *found->second;
@@ -162,9 +208,10 @@ Plan plan_all(ExperimentConfig experiment, Diagnostics& diagnostics) {
   plan.experiment = std::move(experiment);
   check_name(plan.experiment, diagnostics);
   const std::size_t before = diagnostics.size();
+  check_unused(plan.experiment, diagnostics);
   Declarations declarations = declare(plan.experiment, diagnostics);
   Planner(declarations, plan, diagnostics).make_nodes();
-  check_nodes(plan, diagnostics);
+  check_nodes(plan, written_elements(declarations), diagnostics);
   compute_keys(plan, diagnostics);
   if (diagnostics.size() == before) resolve_elements(declarations, plan.experiment);
   return plan;
@@ -207,7 +254,8 @@ std::vector<Plan> make_plans(std::vector<ExperimentConfig> experiments) {
   std::map<std::string, std::string> names;
   for (ExperimentConfig& experiment : experiments) {
     const auto [first, is_new] = names.emplace(experiment.name, experiment.path);
-    if (!is_new) {
+    const bool unread = experiment.name.empty() && !experiment.complete;  // its name is not known
+    if (!is_new && !unread) {
       diagnostics.error(experiment.place, fmt::format("the experiment '{}' is also made by {}",
                                                       experiment.name, first->second));
     }

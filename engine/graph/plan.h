@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,6 +26,7 @@ struct NodeLabels {
   std::vector<PointValue> columns;  ///< sweep columns, problem, policy
   std::size_t sweep_columns = 0;    ///< how many of them are sweep columns; they stand first
   std::optional<int> replicate;
+  std::map<std::string, std::string> units;  ///< SI units of those that are quantities
 };
 
 /// One node to compute, or a definition: a node element at one sweep point, for one item of its fan-out and
@@ -47,14 +49,16 @@ struct PlannedNode {
   std::shared_ptr<const Node> node;
   std::shared_ptr<const Element> resolved;  ///< every parameter with its value
   std::vector<PlannedInput> inputs;         ///< in the order of the parameters
-  std::vector<PointValue> labels;      ///< columns that name it in tables: sweep columns, problem, policy
-  std::vector<NodeLabels> row_labels;  ///< of the rows of Node::input_table
+  std::vector<PointValue> labels;  ///< columns that name it in tables: sweep columns, problem, policy
+  std::map<std::string, std::string> units;  ///< SI units of the labels that are quantities
+  std::vector<NodeLabels> row_labels;        ///< of the rows of Node::input_table
   std::vector<std::string> streams;  ///< streams of draws it depends on, its own first (unless a definition)
   std::optional<std::size_t> training;  ///< node that learned the policy it is about; none: not learned
   std::string parameters_text;          ///< part of the key text that comes from `resolved`; see key.h
   std::string family;                   ///< hash of that part: equal for all replicates
   std::vector<std::string> columns;     ///< of the dataset it makes, where known; of the first replicate only
   std::vector<std::string> progress_columns;  ///< of its progress, likewise
+  std::shared_ptr<const Spaces> spaces;       ///< of what it makes, likewise
 };
 
 /// What a config asks for, before looking at any result. Everything that plan, why and run say comes from

@@ -21,11 +21,13 @@ InputNode input_node(const Plan& plan, const PlannedNode& node, const std::files
   }
   input.key = node.key;
   input.labels = node.labels;
+  input.units = node.units;
   input.streams = node.streams;
   input.makes = node.node->makes();
   if (node.training) input.training = plan.nodes[*node.training].key;
   input.columns = node.columns;
   input.progress_columns = node.progress_columns;
+  input.spaces = node.spaces;
   return input;
 }
 

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <set>
 
 #include "engine/data/file_system.h"
 #include "engine/graph/labelled.h"
 #include "registry/text.h"
+#include "registry/units.h"
 
 namespace coppice {
 
@@ -64,9 +66,29 @@ bool makes(const PlannedNode& node, std::string_view artifact) {
   return std::find(made.begin(), made.end(), artifact) != made.end();
 }
 
-/// Sweep columns, then the ids of the problem and the policy that it makes or reads.
+/// The SI units of the columns whose values are all quantities of one kind.
+std::map<std::string, std::string> units_of(const SweepPoints& sweep) {
+  std::map<std::string, std::string> units;
+  for (std::size_t i = 0; i < sweep.columns.size() && !sweep.points.empty(); ++i) {
+    const std::optional<Quantity> first = parse_quantity(sweep.points.front()[i].second);
+    if (!first || first->dimension == Dimension{}) continue;
+    const auto like_first = [&](const Point& point) {
+      const std::optional<Quantity> value = parse_quantity(point[i].second);
+      return value && value->dimension == first->dimension && std::isfinite(value->value);
+    };
+    if (std::all_of(sweep.points.begin(), sweep.points.end(), like_first))
+      units[sweep.columns[i]] = unit_text(first->dimension);
+  }
+  return units;
+}
+
+/// Sweep columns, quantities as numbers in SI units; then the ids of the problem and the policy that it makes
+/// or reads.
 void label_node(PlannedNode& node, const Plan& plan) {
   node.labels = node.point;
+  for (auto& [column, value] : node.labels) {
+    if (node.units.contains(column)) value = number_text(parse_quantity(value)->value);
+  }
   for (const char* artifact : {"problem", "policy"}) {
     if (makes(node, artifact)) {
       node.labels.emplace_back(artifact, node.id);
@@ -123,7 +145,9 @@ std::optional<std::size_t> training_of(const PlannedNode& node, const Plan& plan
 }  // namespace
 
 Planner::Planner(Declarations& declarations, Plan& plan, Diagnostics& diagnostics)
-    : declarations_(declarations), plan_(plan), diagnostics_(diagnostics), index_(plan.experiment.sweeps) {}
+    : declarations_(declarations), plan_(plan), diagnostics_(diagnostics), index_(plan.experiment.sweeps) {
+  for (const SweepPoints& sweep : plan.experiment.sweeps) units_[sweep.id] = units_of(sweep);
+}
 
 void Planner::make_nodes() {
   for (const std::size_t declared : declarations_.order) {
@@ -149,7 +173,7 @@ void Planner::expand(std::size_t declared, DeclaredElement& element) {
     Variant replicate = variant;
     for (int r = 0; r < count; ++r) {
       replicate.standing.replicate = r;
-      add(declared, element, replicate);
+      if (!add(declared, element, replicate)) break;  // the others have the same mistake
     }
   }
 }
@@ -212,7 +236,7 @@ bool Planner::fan_out(DeclaredElement& element, const DeclaredReference& referen
   return true;
 }
 
-void Planner::add(std::size_t declared, DeclaredElement& element, const Variant& variant) {
+bool Planner::add(std::size_t declared, DeclaredElement& element, const Variant& variant) {
   const DeclaredNode& origin = declarations_.nodes[declared];
   PlannedNode node;
   node.id = origin.id;
@@ -232,16 +256,18 @@ void Planner::add(std::size_t declared, DeclaredElement& element, const Variant&
           {reference.parameter->name, reference.parameter->artifact, true, {variant.target}});
     } else if (!join(element, reference, node)) {
       element.sound = false;
-      return;
+      return false;
     }
   }
   name_node(node);
+  for (const std::string& sweep : node.sweeps) node.units.insert(units_[sweep].begin(), units_[sweep].end());
   label_node(node, plan_);
   label_rows(node, plan_);
   collect_streams(node, plan_);
   node.training = training_of(node, plan_);
   index_.add(declared, plan_.nodes.size(), standing_of(node));
   plan_.nodes.push_back(std::move(node));
+  return true;
 }
 
 bool Planner::join(const DeclaredElement& element, const DeclaredReference& reference, PlannedNode& node) {

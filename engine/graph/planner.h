@@ -19,7 +19,7 @@ class Planner {
   void expand(std::size_t declared, DeclaredElement& element);
   std::vector<Variant> variants(DeclaredElement& element);
   bool fan_out(DeclaredElement& element, const DeclaredReference& reference, std::vector<Variant>& variants);
-  void add(std::size_t declared, DeclaredElement& element, const Variant& variant);
+  bool add(std::size_t declared, DeclaredElement& element, const Variant& variant);
   bool join(const DeclaredElement& element, const DeclaredReference& reference, PlannedNode& node);
   bool check_match(const DeclaredElement& element, const DeclaredReference& reference,
                    const DeclaredTarget& target, const PlannedNode& reader,
@@ -30,6 +30,7 @@ class Planner {
   Plan& plan_;
   Diagnostics& diagnostics_;
   JoinIndex index_;
+  std::map<std::string, std::map<std::string, std::string>> units_;  // SI units of the columns of each sweep
 };
 
 }  // namespace coppice

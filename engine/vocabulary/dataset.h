@@ -53,6 +53,9 @@ void write_dataset(const std::filesystem::path& file, const Dataset& dataset);
 /// steps or follow a terminal step, and when there are none.
 Dataset read_dataset(const std::filesystem::path& file, const Spaces& spaces);
 
+/// Throws as read_dataset for what is wrong with the header of a CSV text.
+void check_dataset_header(std::shared_ptr<const SourceFile> source, const Spaces& spaces);
+
 /// Reads the columns s_<axis> of a CSV text (rows x axes). Throws as read_dataset.
 Matrix read_states(std::shared_ptr<const SourceFile> source, const Space& states);
 

@@ -49,6 +49,10 @@ struct CollectNode : Node {
     return dataset_column_names(load_problem(context.inputs("problem").front())->spaces());
   }
 
+  std::shared_ptr<const Spaces> spaces(const NodeContext& context) const override {
+    return load_spaces(context.inputs("problem").front());
+  }
+
   void run(NodeContext& context) const override {
     const auto target = load_problem(context.inputs("problem").front());
     const Dataset dataset = episodes > 0 ? play(*target, context) : sample(*target, context);

@@ -7,6 +7,8 @@ namespace {
 
 /// Transitions, or with no problem any table, read from a CSV file.
 struct DatasetNode : Node {
+  static constexpr std::size_t kHead = std::size_t{1} << 20;  // more than any header has
+
   FilePath file;
   Reference problem;
 
@@ -17,11 +19,17 @@ struct DatasetNode : Node {
     if (!problem.id.empty()) {
       return dataset_column_names(load_problem(context.inputs("problem").front())->spaces());
     }
-    try {
-      return CsvReader(read_source(file.path)).header();
-    } catch (const ConfigError&) {  // a file that is not there is reported with the key, its content by run
-      return {};
-    }
+    return CsvReader(read_head(file.path, kHead)).header();
+  }
+
+  std::shared_ptr<const Spaces> spaces(const NodeContext& context) const override {
+    return problem.id.empty() ? nullptr : load_spaces(context.inputs("problem").front());
+  }
+
+  /// The header; the rows are read when the node runs.
+  void check(const NodeContext& context) const override {
+    if (problem.id.empty()) return;  // as for its columns
+    check_dataset_header(read_head(file.path, kHead), *spaces(context));
   }
 
   void run(NodeContext& context) const override {

@@ -36,6 +36,10 @@ struct PolicyNode : Node {
     }
   }
 
+  std::shared_ptr<const Spaces> spaces(const NodeContext& context) const override {
+    return problem.id.empty() ? nullptr : load_spaces(context.inputs("problem").front());
+  }
+
   void run(NodeContext& context) const override {
     const std::filesystem::path target = context.folder() / kPolicyFile;
     if (problem.id.empty()) {

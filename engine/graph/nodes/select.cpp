@@ -45,6 +45,10 @@ struct SelectNode : Node {
     }
   }
 
+  std::shared_ptr<const Spaces> spaces(const NodeContext& context) const override {
+    return load_spaces(context.inputs("problem").front());
+  }
+
   void run(NodeContext& context) const override {
     const auto target = load_problem(context.inputs("problem").front());
     std::vector<Returns> played;

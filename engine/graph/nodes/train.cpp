@@ -92,6 +92,11 @@ struct TrainNode : Node {
     check_needs(*target);
     check_samples(context.inputs("samples"));
     if (!policy.id.empty()) load_policy(context.inputs("policy").front(), *target);
+    for (const InputNode& node : context.inputs("samples")) require_samples_of(node, *target);
+  }
+
+  std::shared_ptr<const Spaces> spaces(const NodeContext& context) const override {
+    return load_spaces(context.inputs("problem").front());
   }
 
   void run(NodeContext& context) const override {
