@@ -14,8 +14,9 @@ class Selecting : public RunsInAFolder {
                     "<policy id=\"any\"><random/></policy>"
                     "<collect id=\"shared\" problem=\"car\" policy=\"any\" episodes=\"2\"/>"
                     "<evaluate id=\"only_" +
-                        name +
-                        "\" problem=\"car\" policies=\"any\" episodes=\"2\"/>"
+                        name + "\" problem=\"car\" policies=\"any\" horizon=\"" +
+                        std::string(name == "a" ? "2" : "3") +
+                        "\" episodes=\"2\"/>"
                         "</experiment>");
     }
   }
@@ -48,9 +49,9 @@ TEST_F(Selecting, EachConfigTakesTheNodesThatItHas) {
 
 TEST_F(Selecting, ANodeThatNoConfigHasIsShownOnTheCommandLine) {
   refused("a.xml b.xml --only only_a,only_c",
-          {"<command line>:1:", "'only_c' is no node of any", "      ^~~~~~\n"});
-  refused("a.xml --force=shard",
-          {"<command line>:1:26: error: 'shard' is no node", "did you mean 'shared'?"});
+          {"<command line>:1:", "'only_c' is no node of any", "| runner ", " ^~~~~~ did you mean 'only_a'?"});
+  refused("a.xml --force=shard", {"<command line>:1:2", ": error: 'shard' is no node of the experiment 'a'",
+                                  "did you mean 'shared'?"});
   refused("a.xml b.xml --only only_a --force only_b",
           {"<command line>:1:", "'only_b' is forced, and not among"});
 }
