@@ -4,10 +4,14 @@
 
 namespace coppice {
 
-void Function::predict_batch(const Matrix& x, Matrix& y) const {
+void Function::check_batch(const Matrix& x, const Matrix& y) const {
   if (x.columns() != inputs() || y.columns() != outputs() || x.rows() != y.rows()) {
     throw std::logic_error("predict_batch: the tables do not fit the function");
   }
+}
+
+void Function::predict_batch(const Matrix& x, Matrix& y) const {
+  check_batch(x, y);
   std::vector<double> in(inputs());
   std::vector<double> out(outputs());
   for (std::size_t i = 0; i < x.rows(); ++i) {

@@ -54,6 +54,10 @@ class Function {
 
   /// What people want to know of it: names and numbers ("leaves", 812; "depth", 14).
   virtual std::vector<std::pair<std::string, double>> facts() const { return {}; }
+
+ protected:
+  /// Throws std::logic_error when predict_batch is given tables of other sizes than the function's.
+  void check_batch(const Matrix& x, const Matrix& y) const;
 };
 using MadeFunction = Sub<Function>;
 

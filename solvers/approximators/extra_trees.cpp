@@ -13,6 +13,7 @@ struct TreeParameters {
   Leaves leaves = Leaves::pwc;
   std::optional<int> k;
   std::optional<int> n_min;
+  Growth::Short too_few = Growth::Short::redraw;
   double v_min = 0;
   double margin = 0;
 
@@ -26,6 +27,7 @@ struct TreeParameters {
     const std::size_t few = growth.leaf == LeafModel::linear ? std::max(inputs + 1, logarithm * inputs)
                                                              : std::max<std::size_t>(1, logarithm);
     growth.min_samples = n_min ? static_cast<std::size_t>(*n_min) : few;
+    growth.too_few = too_few;
     growth.min_variance = v_min;
     growth.leaf_margin = margin;
     return growth;
@@ -43,6 +45,11 @@ struct TreeParameters {
             "Samples in a leaf at least; auto, for N samples of D inputs: max(1, floor(ln N)) for constant "
             "leaves, max(D + 1, D floor(ln N)) for linear ones.",
             at_least(1))
+        .choice(
+            "too_few", static_cast<Growth::Short T::*>(&T::too_few), {"redraw", "reject"},
+            "What becomes of a threshold that leaves fewer than n_min samples on a side: it is drawn again "
+            "(so that all allowed ones are equally likely, the thesis's rule), or its input is not split at "
+            "this node (scikit-learn's).")
         .add("v_min", static_cast<double T::*>(&T::v_min), "",
              "Nodes whose outputs have no more variance are not split.", at_least(0))
         .add("margin", static_cast<double T::*>(&T::margin), "",
@@ -51,17 +58,11 @@ struct TreeParameters {
   }
 };
 
-MadeFunction grow_forest(const TrainingSet& set, const TreeParameters& parameters, std::size_t trees,
-                         const Draws& draws, Parallel& parallel) {
+MadeFunction fit_forest(const TrainingSet& set, const TreeParameters& parameters, std::size_t trees,
+                        const Draws& draws, Parallel& parallel) {
   const auto absent = std::count(set.weights.begin(), set.weights.end(), 0.0);
   const Growth growth = parameters.growth(set.x.rows() - static_cast<std::size_t>(absent), set.x.columns());
-  const std::size_t outputs = set.y.columns();
-  std::vector<Tree> grown(trees * outputs);  // one forest for each output dimension
-  parallel.for_each(grown.size(), [&](std::size_t i) {
-    grown[i] = grow_tree(set, i / trees, growth, draws.fork("output", i / trees).stream("tree", i % trees));
-  });
-  Forest forest(set.x.columns(), outputs, growth.leaf);
-  for (const Tree& tree : grown) forest.add(tree);
+  Forest forest = grow_forest(set, growth, trees, draws, parallel);
   return made<Function>(ForestFunction(std::move(forest)), ForestFunction::kName);
 }
 
@@ -71,7 +72,7 @@ class ExtraTrees : public Approximator, public TreeParameters {
   int trees = 25;
 
   MadeFunction fit(const TrainingSet& set, const Draws& draws, Parallel& parallel) const override {
-    return grow_forest(set, *this, static_cast<std::size_t>(trees), draws, parallel);
+    return fit_forest(set, *this, static_cast<std::size_t>(trees), draws, parallel);
   }
   static Parameters<ExtraTrees> parameters() {
     return declare<ExtraTrees>().add("trees", &ExtraTrees::trees, "",
@@ -83,16 +84,16 @@ class ExtraTrees : public Approximator, public TreeParameters {
 class RegressionTree : public Approximator, public TreeParameters {
  public:
   MadeFunction fit(const TrainingSet& set, const Draws& draws, Parallel& parallel) const override {
-    return grow_forest(set, *this, 1, draws, parallel);
+    return fit_forest(set, *this, 1, draws, parallel);
   }
   static Parameters<RegressionTree> parameters() { return declare<RegressionTree>(); }
 };
 
 const Component<Approximator, ExtraTrees> kForest(
     "extra_trees", "Forest of extremely randomized trees, with constant or linear leaves.",
-    "Geurts, Ernst and Wehenkel, Machine Learning 63 (2006); L. Hofer's thesis (2017), 2.1.5", 2);
+    "Geurts, Ernst and Wehenkel, Machine Learning 63 (2006); L. Hofer's thesis (2017), 2.1.5", 3);
 const Component<Approximator, RegressionTree> kTree("regression_tree", "A single extremely randomized tree.",
-                                                    "L. Hofer's thesis (2017), Algorithm 6", 2);
+                                                    "L. Hofer's thesis (2017), Algorithm 6", 3);
 
 }  // namespace
 }  // namespace coppice

@@ -1,64 +1,106 @@
 #pragma once
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "engine/vocabulary/archive.h"
+#include "engine/vocabulary/matrix.h"
+#include "solvers/approximators/tree.h"
 
 namespace coppice {
 
-/// More inputs than this are refused; a prediction copies its input to the stack.
-inline constexpr std::size_t kMaxTreeInputs = 255;
-/// Deeper trees are neither grown nor read: the operations on trees are recursive.
-inline constexpr int kMaxTreeDepth = 1000;
-
-/// One node of a tree in a flat array. A split sends x[feature] <= value to node `child` and the rest to
-/// `child + 1`. A leaf has feature == inputs and itself as child: with a NaN after the last input, a descent
-/// stays in it without a test. Its value is its constant, or the row of its linear model.
-struct TreeNode {
-  double value = 0;
-  std::int32_t feature = 0;
-  std::int32_t child = 0;
-  friend bool operator==(const TreeNode&, const TreeNode&) = default;
-};
-
-/// What leaves hold: a constant, C(y), or a linear model, L(A, B) (thesis, 2.1.2).
-enum class LeafModel { constant, linear };
-
-/// A linear leaf model is a row of numbers: bias B, the slopes A (one for each input), and the range [low,
-/// high] that its predictions are held in. Projection and averaging act on all of them; the range is applied
-/// once, to the mean of a forest's models by the mean of their ranges. So both operations stay exact although
-/// predictions are bounded.
-constexpr std::size_t model_width(std::size_t inputs) {
-  return inputs + 3;
+/// The least single-precision number that is not below x. Thresholds are in single precision, so that
+/// x <= threshold and rounded_up(x) <= threshold say the same: training and prediction compare in single
+/// precision and still send every x where its double-precision value belongs. What training cannot see is
+/// inputs that differ by less than 1 part in 2^23 of themselves.
+inline float rounded_up(double x) {
+  const auto nearest = static_cast<float>(x);
+  const auto bits = std::bit_cast<std::int32_t>(nearest);
+  const std::int32_t above = bits >= 0 ? bits + 1 : bits - 1;
+  const float up = static_cast<double>(nearest) < x ? std::bit_cast<float>(above) : nearest;
+  return up + 0.0F;  // makes 0 of -0
 }
 
-/// A single tree; its root is node 0.
-struct Tree {
-  std::size_t inputs = 0;
-  LeafModel leaf = LeafModel::constant;
-  std::vector<TreeNode> nodes;
-  std::vector<double> models;  ///< linear leaves: rows of model_width(inputs) numbers
+/// One node of a packed tree, 8 bytes. A split sends x[feature] <= value to the node `ahead` places after it
+/// and the rest to the one behind that. A leaf has feature == inputs and 0 ahead: with a NaN after the last
+/// input, a descent stays in it without a test. Its value is its constant in units of its output's scale, or
+/// the number of its linear model.
+struct ForestNode {
+  float value = 0;
+  std::uint32_t link = 0;
+
+  static constexpr std::uint32_t kMaxAhead = (1u << 24) - 1;
+  static constexpr ForestNode split(std::uint32_t feature, float threshold, std::uint32_t ahead) {
+    return {threshold, feature << 24 | ahead};
+  }
+  static constexpr ForestNode leaf(std::size_t inputs, float value) {
+    return {value, static_cast<std::uint32_t>(inputs) << 24};
+  }
+  static constexpr ForestNode linear_leaf(std::size_t inputs, std::uint32_t row) {
+    return {std::bit_cast<float>(kFirstRow + row), static_cast<std::uint32_t>(inputs) << 24};
+  }
+  constexpr std::uint32_t feature() const { return link >> 24; }
+  constexpr std::uint32_t ahead() const { return link & kMaxAhead; }
+  constexpr std::uint32_t row() const { return std::bit_cast<std::uint32_t>(value) - kFirstRow; }
+
+  friend bool operator==(const ForestNode& a, const ForestNode& b) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+  }
+
+ private:
+  static constexpr std::uint32_t kFirstRow = 0x00800000;  // below, slow denormal numbers; above 2^31, NaNs
+};
+static_assert(sizeof(ForestNode) == 8);
+
+/// What the constants of one output's leaves mean: offset + scale * value. It keeps single precision relative
+/// to how much the output varies.
+struct OutputScale {
+  double offset = 0;
+  double scale = 1;
+  float packed(double value) const { return static_cast<float>((value - offset) / scale) + 0.0F; }
+  friend bool operator==(const OutputScale&, const OutputScale&) = default;
 };
 
-/// A tree that somebody else holds.
-struct TreeView {
+/// The least and the largest of some outputs, and the scale to pack them with: a power of 2, and an offset
+/// only where they are far from 0 for their range, a number with few digits. So short numbers are packed
+/// exactly.
+struct ValueRange {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -std::numeric_limits<double>::infinity();
+
+  void include(double value) {
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  OutputScale scale() const;
+};
+
+/// A tree as a forest holds it.
+struct PackedTree {
+  std::vector<ForestNode> nodes;
+  std::vector<double> models;  ///< linear leaves: rows of model_width(inputs) numbers
+};
+/// Constants and thresholds that are not in single precision are rounded to it.
+PackedTree pack(const Tree& tree);
+
+/// A tree of a forest.
+struct ForestTree {
   std::size_t inputs = 0;
   LeafModel leaf = LeafModel::constant;
-  const TreeNode* nodes = nullptr;
+  const ForestNode* nodes = nullptr;  ///< of the whole forest
   const double* models = nullptr;
-  std::int32_t root = 0;
+  std::uint32_t root = 0;
+  OutputScale scale;
 
-  TreeView() = default;
-  TreeView(const Tree& tree)
-      : inputs(tree.inputs), leaf(tree.leaf), nodes(tree.nodes.data()), models(tree.models.data()) {}
-
-  bool is_leaf(std::int32_t node) const { return nodes[node].child == node; }
-  const double* model(std::int32_t node) const {
-    return models + static_cast<std::size_t>(nodes[node].value) * model_width(inputs);
-  }
+  bool is_leaf(std::uint32_t node) const { return nodes[node].ahead() == 0; }
+  double constant(std::uint32_t node) const { return scale.offset + scale.scale * nodes[node].value; }
+  const double* model(std::uint32_t node) const { return models + nodes[node].row() * model_width(inputs); }
 };
 
 /// Regression forests for one or several outputs, one after the other, each the mean of its trees (thesis,
@@ -66,21 +108,24 @@ struct TreeView {
 class Forest {
  public:
   Forest() = default;
-  Forest(std::size_t inputs, std::size_t outputs, LeafModel leaf);
+  Forest(std::size_t inputs, std::vector<OutputScale> outputs, LeafModel leaf);
 
-  /// Adds a tree for `output`; outputs in order, equally many trees each.
-  void add(const Tree& tree);
+  /// Adds a tree of `leaf()` models; outputs in order, equally many trees each.
+  void add(const PackedTree& tree);
+  void reserve(std::size_t trees, std::size_t nodes, std::size_t models);
 
   std::size_t inputs() const { return inputs_; }
-  std::size_t outputs() const { return outputs_; }
+  std::size_t outputs() const { return scales_.size(); }
   LeafModel leaf() const { return leaf_; }
   /// Trees of one output.
-  std::size_t trees() const { return outputs_ == 0 ? 0 : roots_.size() / outputs_; }
-  TreeView tree(std::size_t output, std::size_t index) const;
-  std::size_t leaves() const;
+  std::size_t trees() const { return scales_.empty() ? 0 : roots_.size() / scales_.size(); }
+  ForestTree tree(std::size_t output, std::size_t index) const;
+  std::size_t leaves() const { return (nodes_.size() + roots_.size()) / 2; }
 
   /// The values of all outputs at x. Does not allocate.
   void predict(std::span<const double> x, std::span<double> y) const;
+  /// The same for rows of x, to rows of y; faster. Does not allocate.
+  void predict_batch(const Matrix& x, Matrix& y) const;
 
   void save(Archive& archive) const;
   /// Throws std::runtime_error for anything but disjoint trees of finite numbers.
@@ -89,16 +134,17 @@ class Forest {
   friend bool operator==(const Forest&, const Forest&) = default;
 
  private:
-  double constant_mean(const double* x, const std::int32_t* roots) const;
-  double linear_mean(const double* x, const std::int32_t* roots) const;
+  static Forest load_first_format(const Archive& archive, std::size_t inputs, std::size_t outputs,
+                                  LeafModel leaf);
+  double linear_value(std::uint32_t leaf, const double* x) const;
   void check() const;
 
   std::size_t inputs_ = 0;
-  std::size_t outputs_ = 0;
   LeafModel leaf_ = LeafModel::constant;
-  std::vector<TreeNode> nodes_;
+  std::vector<OutputScale> scales_;
+  std::vector<ForestNode> nodes_;
   std::vector<double> models_;
-  std::vector<std::int32_t> roots_;
+  std::vector<std::uint32_t> roots_;
 };
 
 }  // namespace coppice

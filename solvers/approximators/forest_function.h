@@ -16,6 +16,7 @@ class ForestFunction : public Function {
   std::size_t inputs() const override { return forest_.inputs(); }
   std::size_t outputs() const override { return forest_.outputs(); }
   void predict(std::span<const double> x, std::span<double> y) const override { forest_.predict(x, y); }
+  void predict_batch(const Matrix& x, Matrix& y) const override;
   Maximum maximize(std::span<const double> prefix, const Space& box, const Maximization& how) const override;
 
   void save(Archive& archive) const override { forest_.save(archive); }

@@ -6,9 +6,6 @@
 namespace coppice {
 namespace {
 
-// A direction with less than this part of its variance left, given the inputs before it, counts as dependent.
-constexpr double kDependent = 1e-10;
-
 constexpr std::size_t triangle(std::size_t row) {
   return row * (row + 1) / 2;
 }
@@ -44,6 +41,18 @@ void Moments::add(const double* xy, double weight) {
   }
 }
 
+void Moments::set(std::span<const float> centre, std::span<const double> products) {
+  std::copy(centre.begin(), centre.end(), centre_.begin());
+  weight_ = products[0];
+  const double* next = products.data() + 1;
+  double* product = product_.data();
+  for (std::size_t i = 0; i < size_; ++i) {
+    sum_[i] = *next++;
+    product = std::copy(next, next + i + 1, product);
+    next += i + 1;
+  }
+}
+
 void Moments::set_difference(const Moments& whole, const Moments& part) {
   centre_ = whole.centre_;
   weight_ = whole.weight_ - part.weight_;
@@ -51,8 +60,13 @@ void Moments::set_difference(const Moments& whole, const Moments& part) {
   for (std::size_t i = 0; i < product_.size(); ++i) product_[i] = whole.product_[i] - part.product_[i];
 }
 
+// Product of inputs i and j (the last one is the output) about the samples' own mean.
+double Moments::central(std::size_t i, std::size_t j) const {
+  return product_[triangle(i) + j] - sum_[i] * (sum_[j] / weight_);
+}
+
 // Cholesky factor of the inputs' correlations, with `ridge` added to the diagonal; false when it is singular.
-bool Moments::factor(double ridge) {
+bool Moments::factor(double ridge, double dependent) {
   const std::size_t n = size_ - 1;
   for (std::size_t i = 0; i < n; ++i) {
     double* row = cholesky_.data() + triangle(i);
@@ -60,22 +74,20 @@ bool Moments::factor(double ridge) {
       const double* other = cholesky_.data() + triangle(j);
       double rest = correlation_[triangle(i) + j] + (i == j ? ridge : 0.0);
       for (std::size_t k = 0; k < j; ++k) rest -= row[k] * other[k];
-      if (i == j && !(rest > kDependent)) return false;
+      if (i == j && !(rest > dependent)) return false;
       row[j] = i == j ? std::sqrt(rest) : rest / other[j];
     }
   }
   return true;
 }
 
-double Moments::fit(double& bias, std::span<double> slopes) {
+// Solves cholesky solution = correlations with y, and returns the sum of squares that is left; it is >= 0
+// with the ridge as without. An input without variance is replaced by an independent one.
+double Moments::solve(double dependent) {
   const std::size_t n = size_ - 1;
-  // Correlations about the samples' own mean; an input without variance is replaced by an independent one.
-  const auto central = [&](std::size_t i, std::size_t j) {
-    return product_[triangle(i) + j] - sum_[i] * (sum_[j] / weight_);
-  };
   for (std::size_t i = 0; i < size_; ++i) {
     const double variance = central(i, i);
-    const double noise = 1e-14 * product_[triangle(i) + i];  // of the difference above
+    const double noise = 1e-4 * dependent * product_[triangle(i) + i];  // of a difference
     scale_[i] = variance > noise ? std::sqrt(variance) : 0.0;
   }
   for (std::size_t i = 0; i < n; ++i) {
@@ -85,18 +97,21 @@ double Moments::fit(double& bias, std::span<double> slopes) {
     }
     correlation_[triangle(i) + i] = 1;
   }
-  if (!factor(0)) factor(kRidge);
-
-  // cholesky cholesky^T slopes = correlations with y; with the ridge as without, both residuals below are >=
-  // 0.
+  if (!factor(0, dependent)) factor(std::max(kRidge, 10 * dependent), dependent);
+  double explained = 0;
   for (std::size_t i = 0; i < n; ++i) {
     double rest = scale_[i] > 0 ? central(n, i) / scale_[i] : 0.0;
     const double* row = cholesky_.data() + triangle(i);
     for (std::size_t k = 0; k < i; ++k) rest -= row[k] * solution_[k];
     solution_[i] = rest / row[i];
+    explained += solution_[i] * solution_[i];
   }
-  double explained = 0;
-  for (std::size_t i = 0; i < n; ++i) explained += solution_[i] * solution_[i];
+  return std::max(0.0, central(n, n) - explained);
+}
+
+double Moments::fit(double& bias, std::span<double> slopes) {
+  const std::size_t n = size_ - 1;
+  const double residual = solve(kDependent);
   for (std::size_t i = n; i-- > 0;) {
     double rest = solution_[i];
     for (std::size_t k = i + 1; k < n; ++k) rest -= cholesky_[triangle(k) + i] * solution_[k];
@@ -107,7 +122,7 @@ double Moments::fit(double& bias, std::span<double> slopes) {
     slopes[i] = scale_[i] > 0 ? solution_[i] / scale_[i] : 0.0;
     bias -= slopes[i] * (centre_[i] + sum_[i] / weight_);
   }
-  return std::max(0.0, central(n, n) - explained);
+  return residual;
 }
 
 }  // namespace coppice

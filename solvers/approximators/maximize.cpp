@@ -66,7 +66,7 @@ class ExactMaximum {
       const double value = tree.nodes[node].value;
       return {value, value, value, value};
     }
-    const double* model = TreeView(tree).model(node);
+    const double* model = tree.model(node);
     double most = model[0];
     double least = model[0];
     for (std::size_t i = 0; i < tree.inputs; ++i) {
@@ -154,7 +154,7 @@ class ExactMaximum {
         value += trees_[t].nodes[node].value;
         continue;
       }
-      const double* model = TreeView(trees_[t]).model(node);
+      const double* model = trees_[t].model(node);
       value += model[0];
       for (std::size_t i = 0; i < inputs; ++i) slopes_[i] += model[1 + i];
       low += model[inputs + 1];

@@ -136,7 +136,7 @@ class Pruning {
 
   // Mean absolute difference of the two linear leaves over the low (0) or high (1) side of the preleaf.
   double mean_difference(std::int32_t preleaf, std::int32_t side) {
-    const TreeView tree(*tree_);
+    const Tree& tree = *tree_;
     const std::int32_t child = tree_->nodes[preleaf].child;
     const double* a = tree.model(child);
     const double* b = tree.model(child + 1);

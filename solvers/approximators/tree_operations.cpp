@@ -37,7 +37,8 @@ double* add_leaf(Tree& tree, std::int32_t at, double constant) {
 
 class Projection {
  public:
-  Projection(const TreeView& tree, std::span<const double> prefix, const Box& box, Region& region, Tree& out)
+  Projection(const ForestTree& tree, std::span<const double> prefix, const Box& box, Region& region,
+             Tree& out)
       : tree_(tree), prefix_(prefix), region_(region), out_(out) {
     region.reset(box);
     begin_tree(out, tree.inputs - prefix.size(), tree.leaf);
@@ -45,31 +46,33 @@ class Projection {
   }
 
  private:
-  void visit(std::int32_t from, std::int32_t to) {
+  void visit(std::uint32_t from, std::int32_t to) {
     while (!tree_.is_leaf(from)) {
-      const TreeNode& node = tree_.nodes[from];
-      const auto feature = static_cast<std::size_t>(node.feature);
+      const ForestNode& node = tree_.nodes[from];
+      const std::uint32_t below = from + node.ahead();
+      const std::size_t feature = node.feature();
+      const double threshold = node.value;
       if (feature < prefix_.size()) {
-        from = node.child + (prefix_[feature] > node.value ? 1 : 0);
+        from = below + (prefix_[feature] > threshold ? 1 : 0);
         continue;
       }
       const std::size_t axis = feature - prefix_.size();
-      const bool low = region_.reaches_low(axis, node.value);
-      const bool high = region_.reaches_high(axis, node.value);
+      const bool low = region_.reaches_low(axis, threshold);
+      const bool high = region_.reaches_high(axis, threshold);
       if (low && high) {
-        const std::int32_t child = add_split(out_, to, static_cast<std::int32_t>(axis), node.value);
-        region_.in_low(axis, node.value, [&] { visit(node.child, child); });
-        region_.in_high(axis, node.value, [&] { visit(node.child + 1, child + 1); });
+        const std::int32_t child = add_split(out_, to, static_cast<std::int32_t>(axis), threshold);
+        region_.in_low(axis, threshold, [&] { visit(below, child); });
+        region_.in_high(axis, threshold, [&] { visit(below + 1, child + 1); });
         return;
       }
-      from = node.child + (low ? 0 : 1);
+      from = below + (low ? 0 : 1);
     }
     leaf(from, to);
   }
 
   // P(L(A, B), i) = L(A_j, B + A_i i), summed in the order of a prediction.
-  void leaf(std::int32_t from, std::int32_t to) {
-    double* model = add_leaf(out_, to, tree_.nodes[from].value);
+  void leaf(std::uint32_t from, std::int32_t to) {
+    double* model = add_leaf(out_, to, tree_.leaf == LeafModel::constant ? tree_.constant(from) : 0);
     if (model == nullptr) return;
     const double* whole = tree_.model(from);
     model[0] = whole[0];
@@ -77,7 +80,7 @@ class Projection {
     std::copy(whole + 1 + prefix_.size(), whole + model_width(tree_.inputs), model + 1);
   }
 
-  const TreeView tree_;
+  const ForestTree tree_;
   const std::span<const double> prefix_;
   Region& region_;
   Tree& out_;
@@ -85,18 +88,17 @@ class Projection {
 
 class Average {
  public:
-  Average(const TreeView& t1, const TreeView& t2, double w1, double w2, const Box& box, Region& region,
-          Tree& out)
+  Average(const Tree& t1, const Tree& t2, double w1, double w2, const Box& box, Region& region, Tree& out)
       : region_(region), out_(out) {
     const bool linear = t1.leaf == LeafModel::linear || t2.leaf == LeafModel::linear;
     region.reset(box);
     begin_tree(out, t1.inputs, linear ? LeafModel::linear : LeafModel::constant);
-    visit({t1, t1.root, w1}, {t2, t2.root, w2}, 0);
+    visit({t1, 0, w1}, {t2, 0, w2}, 0);
   }
 
  private:
   struct Part {
-    const TreeView& tree;
+    const Tree& tree;
     std::int32_t node;
     double weight;
     Part child(std::int32_t side) const { return {tree, tree.nodes[node].child + side, weight}; }
@@ -146,10 +148,10 @@ class Average {
 
 class BestLeaf {
  public:
-  BestLeaf(const TreeView& tree, const Box& box, Region& region) : tree_(tree), box_(box), region_(region) {
+  BestLeaf(const Tree& tree, const Box& box, Region& region) : tree_(tree), box_(box), region_(region) {
     region.reset(box);
     best_.at.resize(tree.inputs);
-    visit(tree.root);
+    visit(0);
   }
   const Maximum& best() const { return best_; }
 
@@ -182,7 +184,7 @@ class BestLeaf {
     return best_place(region_, box_, axis, model == nullptr ? 0.0 : model[1 + axis]);
   }
 
-  const TreeView tree_;
+  const Tree& tree_;
   const Box& box_;
   Region& region_;
   Maximum best_;
@@ -202,13 +204,12 @@ Box Box::everything(std::size_t inputs) {
   return {std::vector<double>(inputs, -kInfinity), std::vector<double>(inputs, kInfinity)};
 }
 
-void project(const TreeView& tree, std::span<const double> prefix, const Box& box, Tree& out) {
+void project(const ForestTree& tree, std::span<const double> prefix, const Box& box, Tree& out) {
   assert(prefix.size() + box.low.size() == tree.inputs);
   Projection(tree, prefix, box, scratch_region(), out);
 }
 
-void weighted_average(const TreeView& t1, const TreeView& t2, double w1, double w2, const Box& box,
-                      Tree& out) {
+void weighted_average(const Tree& t1, const Tree& t2, double w1, double w2, const Box& box, Tree& out) {
   assert(t1.inputs == t2.inputs && box.low.size() == t1.inputs);
   Average(t1, t2, w1, w2, box, scratch_region(), out);
 }
@@ -227,13 +228,13 @@ void merge(std::span<const Tree> trees, const Box& box, std::size_t max_leaves, 
   }
 }
 
-Maximum best_leaf(const TreeView& tree, const Box& box) {
+Maximum best_leaf(const Tree& tree, const Box& box) {
   assert(tree.inputs <= kMaxActionSize);
   return BestLeaf(tree, box, scratch_region()).best();
 }
 
-std::size_t count_leaves(const TreeView& tree) {
-  std::vector<std::int32_t> open{tree.root};
+std::size_t count_leaves(const Tree& tree) {
+  std::vector<std::int32_t> open{0};
   std::size_t leaves = 0;
   while (!open.empty()) {
     const std::int32_t node = open.back();

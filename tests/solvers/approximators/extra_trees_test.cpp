@@ -42,7 +42,8 @@ TEST(ExtraTrees, WorksOutItsParameters) {
               forest(fit("<extra_trees" + trees + explicitly + "/>", samples)))
         << n << " samples of " << d << " inputs: " << automatic;
   };
-  expect_same(1000, 3, "", "k=\"3\" n_min=\"6\" leaves=\"pwc\" v_min=\"0\"");  // floor(ln 1000) = 6
+  expect_same(1000, 3, "",
+              "k=\"3\" n_min=\"6\" leaves=\"pwc\" v_min=\"0\" too_few=\"redraw\"");  // floor(ln 1000) = 6
   expect_same(1000, 3, "leaves=\"pwl\"", "leaves=\"pwl\" k=\"3\" n_min=\"18\" margin=\"0\"");
   expect_same(2, 3, "", "n_min=\"1\"");  // floor(ln 2) = 0
   expect_same(1, 1, "", "n_min=\"1\"");
@@ -53,6 +54,8 @@ TEST(ExtraTrees, WorksOutItsParameters) {
   EXPECT_EQ(forest(fit("<extra_trees/>", samples)).trees(), 25u);
   EXPECT_NE(forest(fit("<extra_trees n_min=\"7\"/>", samples)), forest(fit("<extra_trees/>", samples)));
   EXPECT_NE(forest(fit("<extra_trees k=\"2\"/>", samples)), forest(fit("<extra_trees/>", samples)));
+  EXPECT_NE(forest(fit("<extra_trees too_few=\"reject\"/>", samples)),
+            forest(fit("<extra_trees/>", samples)));
 }
 
 TEST(ExtraTrees, SamplesOfWeight0DoNotCount) {
@@ -79,7 +82,7 @@ TEST(ExtraTrees, GrowsDifferentTreesForEachSeedTreeAndOutput) {
   const MadeFunction function = fit("<extra_trees trees=\"2\"/>", samples);
   EXPECT_NE(forest(function), forest(fit("<extra_trees trees=\"2\"/>", samples, Draws(1, "other", 0))));
   const auto root = [&](std::size_t output, std::size_t tree) {
-    const TreeView view = forest(function).tree(output, tree);
+    const ForestTree view = forest(function).tree(output, tree);
     return view.nodes[view.root].value;
   };
   EXPECT_NE(root(0, 0), root(0, 1));
@@ -91,7 +94,7 @@ TEST(ExtraTrees, ALargerForestBeginsAsASmallerOne) {
   const Samples samples(100, 2);
   EXPECT_EQ(forest(fit("<regression_tree/>", samples)).trees(), 1u);
   const MadeFunction small = fit("<regression_tree/>", samples), large = fit("<extra_trees/>", samples);
-  const TreeView a = forest(small).tree(0, 0), b = forest(large).tree(0, 0);
+  const ForestTree a = forest(small).tree(0, 0), b = forest(large).tree(0, 0);
   EXPECT_EQ(a.nodes[a.root].value, b.nodes[b.root].value);
 }
 
@@ -109,8 +112,9 @@ TEST(ExtraTrees, Learns) {
 }
 
 TEST(ExtraTrees, RefusesWhatIsOutOfBounds) {
-  for (const std::string given : {"trees=\"0\"", "trees=\"100001\"", "k=\"0\"", "n_min=\"0\"", "v_min=\"-1\"",
-                                  "margin=\"-0.1\"", "v_min=\"nan\"", "leaves=\"gp\"", "n_min=\"1.5\""}) {
+  for (const std::string given :
+       {"trees=\"0\"", "trees=\"100001\"", "k=\"0\"", "n_min=\"0\"", "v_min=\"-1\"", "margin=\"-0.1\"",
+        "v_min=\"nan\"", "leaves=\"gp\"", "n_min=\"1.5\"", "too_few=\"keep\""}) {
     EXPECT_THROW(make_from_xml<Approximator>("<extra_trees " + given + "/>"), ConfigError) << given;
   }
 }

@@ -12,6 +12,7 @@ namespace coppice::testing {
 namespace {
 
 const Draws kDraws(2017, "forest", 0);
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Grown {
   std::vector<Tree> trees;  // output after output
@@ -20,11 +21,11 @@ struct Grown {
 
 Grown random_forest(Stream& stream, std::size_t inputs, std::size_t outputs, LeafModel leaf) {
   Grown grown;
-  grown.forest = Forest(inputs, outputs, leaf);
+  grown.forest = Forest(inputs, std::vector<OutputScale>(outputs), leaf);
   grown.trees.resize(outputs * (1 + stream.below(20)));
   for (Tree& tree : grown.trees) {
     tree = random_tree(stream, {inputs, leaf, 5});
-    grown.forest.add(tree);
+    grown.forest.add(pack(tree));
   }
   return grown;
 }
@@ -33,6 +34,23 @@ std::vector<double> predict(const Forest& forest, const std::vector<double>& x) 
   std::vector<double> y(forest.outputs());
   forest.predict(x, y);
   return y;
+}
+
+TEST(RoundedUp, IsTheLeastFloatThatIsNotBelow) {
+  Stream stream = kDraws.stream("rounded");
+  std::vector<double> values = {0.0,    1.0,   1e-50,     1e-310, 1e-45,   3.4e38,
+                                3.5e38, 1e300, kInfinity, 0.1,    16777217};
+  for (int i = 0; i < 100000; ++i) values.push_back(stream.normal() * std::exp2(stream.uniform(-160, 130)));
+  for (const double magnitude : values) {
+    for (const double x : {magnitude, -magnitude}) {
+      const float up = rounded_up(x);
+      ASSERT_GE(static_cast<double>(up), x);
+      const float below = std::nextafter(up, -std::numeric_limits<float>::infinity());
+      ASSERT_TRUE(static_cast<double>(below) < x || up == below) << x;
+      ASSERT_FALSE(up == 0 && std::signbit(up)) << x;
+    }
+  }
+  EXPECT_TRUE(std::isnan(rounded_up(std::numeric_limits<double>::quiet_NaN())));
 }
 
 // A linear forest holds the mean of its models in the mean of their ranges.
@@ -52,13 +70,92 @@ TEST(Forest, IsTheMeanOfItsTrees) {
         Prediction sum;
         for (std::size_t t = 0; t < each; ++t) {
           const Prediction p = testing::predict(trees[o * each + t], x);
-          ASSERT_EQ(testing::predict(forest.tree(o, t), x), p);
+          ASSERT_EQ(testing::predict(unpacked(forest.tree(o, t)), x), p);
           sum = {sum.model + p.model, sum.low + p.low, sum.high + p.high};
         }
         ASSERT_EQ(y[o], sum.value() / static_cast<double>(each)) << "trial " << trial;
       }
     }
   }
+}
+
+// A point next to a threshold, in double precision, is on the side that double precision says.
+TEST(Forest, ComparesAsInDoublePrecision) {
+  Stream stream = kDraws.stream("sides");
+  for (int trial = 0; trial < 10000; ++trial) {
+    const auto threshold = static_cast<float>(stream.normal() * std::exp2(stream.uniform(-140, 120)));
+    Tree tree;
+    tree.inputs = 1;
+    tree.nodes = {{threshold, 0, 1}, {-1, 1, 1}, {1, 1, 2}};
+    const Forest forest = forest_of({tree});
+    const double above = std::nextafter(static_cast<double>(threshold), kInfinity);
+    const double below = std::nextafter(static_cast<double>(threshold), -kInfinity);
+    ASSERT_EQ(predict(forest, {threshold}), std::vector<double>{-1});
+    ASSERT_EQ(predict(forest, {below}), std::vector<double>{-1});
+    ASSERT_EQ(predict(forest, {above}), std::vector<double>{1});
+    ASSERT_EQ(predict(forest, {kInfinity}), std::vector<double>{1});
+    ASSERT_EQ(predict(forest, {-kInfinity}), std::vector<double>{-1});
+    ASSERT_EQ(predict(forest, {-std::numeric_limits<double>::quiet_NaN()}), std::vector<double>{-1});
+  }
+}
+
+TEST(Forest, PredictsABatchAsOneByOne) {
+  for (const std::size_t inputs : {std::size_t{1}, std::size_t{3}, std::size_t{40}, kMaxTreeInputs}) {
+    for (const LeafModel leaf : {LeafModel::constant, LeafModel::linear}) {
+      Stream stream = kDraws.stream("batch", inputs);
+      const Forest forest = random_forest(stream, inputs, 2, leaf).forest;
+      for (const std::size_t rows : {0, 1, 7, 8, 9, 255, 300, 600}) {
+        Matrix x(rows, inputs), y(rows, 2);
+        for (double& value : x.values()) value = stream.uniform(-1.5, 1.5);
+        forest.predict_batch(x, y);
+        std::vector<double> in(inputs), out(2);
+        for (std::size_t i = 0; i < rows; ++i) {
+          x.row(i, in);
+          forest.predict(in, out);
+          ASSERT_EQ(y(i, 0), out[0]) << inputs << " inputs, row " << i << " of " << rows;
+          ASSERT_EQ(y(i, 1), out[1]);
+        }
+      }
+    }
+  }
+}
+
+TEST(Forest, ScalesItsConstants) {
+  Tree tree;
+  tree.inputs = 1;
+  tree.nodes = {{0.5, 0, 1}, {0.25, 1, 1}, {1, 1, 2}};
+  Forest forest(1, {{1000, 8}}, LeafModel::constant);
+  forest.add(pack(tree));
+  EXPECT_EQ(predict(forest, {0}), std::vector<double>{1002});
+  EXPECT_EQ(predict(forest, {1}), std::vector<double>{1008});
+  EXPECT_EQ(testing::predict(unpacked(forest.tree(0, 0)), std::vector<double>{1}).value(), 1008);
+}
+
+// Whatever their magnitude and offset, values are packed with an error of 2^-24 of their range; numbers of
+// few digits, and ranges around 0, exactly.
+TEST(ValueRange, MakesAScaleThatKeepsItsValues) {
+  const auto packed = [](double least, double most, double value) {
+    ValueRange range;
+    range.include(least);
+    range.include(most);
+    const OutputScale scale = range.scale();
+    return scale.offset + scale.scale * static_cast<double>(scale.packed(value));
+  };
+  Stream stream = kDraws.stream("range");
+  for (int trial = 0; trial < 10000; ++trial) {
+    const double unit = std::exp2(stream.uniform(-900, 900));
+    const double least = (stream.normal() + (trial % 2 == 0 ? 0 : 1e5)) * unit;
+    const double most = least + stream.uniform() * unit;
+    const double value = std::clamp(stream.uniform(least, most), least, most);
+    const double bound = std::max(most - least, std::min(std::fabs(least), std::fabs(most)) * 1e-9);
+    ASSERT_NEAR(packed(least, most, value), value, bound * 0x1p-23 * 17) << least << " to " << most;
+  }
+  EXPECT_EQ(packed(0.1, 0.1, 0.1), 0.1);
+  EXPECT_EQ(packed(0, 1, 1), 1);
+  EXPECT_EQ(packed(-100, 0, -7.5), -7.5);
+  EXPECT_EQ(packed(1000, 1001, 1000.625), 1000.625);
+  EXPECT_EQ(packed(-1e308, 1e308, 1e308),
+            static_cast<double>(static_cast<float>(1e308 * 0x1p-1023)) * 0x1p1023);
 }
 
 TEST(Forest, CountsItsLeaves) {
@@ -80,8 +177,17 @@ TEST(Forest, SurvivesAnArchive) {
 }
 
 TEST(Forest, TakesAtMostSoManyInputs) {
-  EXPECT_NO_THROW(Forest(kMaxTreeInputs, 1, LeafModel::constant));
-  EXPECT_THROW(Forest(kMaxTreeInputs + 1, 1, LeafModel::constant), std::invalid_argument);
+  EXPECT_NO_THROW(Forest(kMaxTreeInputs, {{}}, LeafModel::constant));
+  EXPECT_THROW(Forest(kMaxTreeInputs + 1, {{}}, LeafModel::constant), std::invalid_argument);
+}
+
+TEST(Forest, PacksNoTreeWhoseChildrenAreTooFar) {
+  Tree tree;
+  tree.inputs = 1;
+  tree.nodes.assign((1u << 24) + 2, {0, 1, 0});
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) tree.nodes[i].child = static_cast<std::int32_t>(i);
+  tree.nodes[0] = {0.5, 0, 1 << 24};
+  EXPECT_THROW(pack(tree), std::runtime_error);
 }
 
 template <class V>
@@ -91,80 +197,13 @@ std::vector<V> changed(const Archive& archive, const std::string& name, std::siz
   return array;
 }
 
-TEST(Forest, RefusesArraysThatMakeNone) {
-  Forest forest(2, 1, LeafModel::linear);
-  Tree tree;
-  tree.inputs = 2;
-  tree.leaf = LeafModel::linear;
-  tree.nodes = {{0.5, 1, 1}, {0, 2, 1}, {1, 2, 2}};
-  tree.models = {1, 2, 3, -1, 1, 4, 5, 6, -2, 2};
-  forest.add(tree);
-  Archive good;
-  forest.save(good);
-  EXPECT_NO_THROW(Forest::load(good));
+using Damages = std::vector<std::pair<std::string, std::function<void(Archive&)>>>;
+using Shape = std::vector<std::int64_t>;
+using Ints = std::vector<std::int32_t>;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  using Ints = std::vector<std::int32_t>;
-  const std::vector<std::pair<std::string, std::function<void(Archive&)>>> damages = {
-      {"three numbers",
-       [](Archive& a) {
-         a.put("shape", std::vector<std::int64_t>{2, 1});
-       }},
-      {"number of inputs",
-       [](Archive& a) {
-         a.put("shape", std::vector<std::int64_t>{-1, 1, 1});
-       }},
-      {"number of inputs",
-       [](Archive& a) {
-         a.put("shape", std::vector<std::int64_t>{256, 1, 1});
-       }},
-      {"number of outputs",
-       [](Archive& a) {
-         a.put("shape", std::vector<std::int64_t>{2, 0, 1});
-       }},
-      {"kind of leaf",
-       [](Archive& a) {
-         a.put("shape", std::vector<std::int64_t>{2, 1, 2});
-       }},
-      {"differ in length",
-       [](Archive& a) {
-         a.put("features", Ints{1, 2});
-       }},
-      {"number of trees", [](Archive& a) { a.put("roots", Ints{}); }},
-      {"does not exist", [](Archive& a) { a.put("roots", Ints{3}); }},
-      {"does not exist", [](Archive& a) { a.put("roots", Ints{-1}); }},
-      {"used twice",
-       [](Archive& a) {
-         a.put("roots", Ints{0, 1});
-       }},
-      {"that no tree reaches", [](Archive& a) { a.put("roots", Ints{1}); }},
-      {"not finite", [&](Archive& a) { a.put("values", changed(a, "values", 0, kNaN)); }},
-      {"a split of no input",
-       [](Archive& a) {
-         a.put("features", Ints{-1, 2, 2});
-       }},
-      {"a split of no input",
-       [](Archive& a) {
-         a.put("features", Ints{3, 2, 2});
-       }},
-      {"do not follow",
-       [](Archive& a) {
-         a.put("children", Ints{0, 1, 2});
-       }},
-      {"do not follow",
-       [](Archive& a) {
-         a.put("children", Ints{2, 1, 2});
-       }},
-      {"a leaf with children",
-       [](Archive& a) {
-         a.put("children", Ints{1, 1, 1});
-       }},
-      {"without its model", [](Archive& a) { a.put("values", changed(a, "values", 2, 2.0)); }},
-      {"without its model", [](Archive& a) { a.put("values", changed(a, "values", 2, 0.5)); }},
-      {"size of its leaf models", [](Archive& a) { a.put("models", std::vector<double>(11)); }},
-      {"model that is not finite", [&](Archive& a) { a.put("models", changed(a, "models", 1, kNaN)); }},
-      {"empty range", [](Archive& a) { a.put("models", changed(a, "models", 3, 1.5)); }},
-  };
+void expect_refused(const Archive& good, const Damages& damages) {
+  EXPECT_NO_THROW(Forest::load(good));
   for (const auto& [message, damage] : damages) {
     Archive archive = good;
     damage(archive);
@@ -175,6 +214,144 @@ TEST(Forest, RefusesArraysThatMakeNone) {
       EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
     }
   }
+}
+
+Damages damages_of_shape() {
+  return {{"three numbers",
+           [](Archive& a) {
+             a.put("shape", Shape{2, 1});
+           }},
+          {"number of inputs",
+           [](Archive& a) {
+             a.put("shape", Shape{-1, 1, 1});
+           }},
+          {"number of inputs",
+           [](Archive& a) {
+             a.put("shape", Shape{256, 1, 1});
+           }},
+          {"number of outputs",
+           [](Archive& a) {
+             a.put("shape", Shape{2, 0, 1});
+           }},
+          {"kind of leaf", [](Archive& a) {
+             a.put("shape", Shape{2, 1, 2});
+           }}};
+}
+
+std::int32_t link(std::uint32_t feature, std::uint32_t ahead) {
+  return static_cast<std::int32_t>(feature << 24 | ahead);
+}
+
+TEST(Forest, RefusesArraysThatMakeNone) {
+  Forest forest(2, {{}}, LeafModel::linear);
+  Tree tree;
+  tree.inputs = 2;
+  tree.leaf = LeafModel::linear;
+  tree.nodes = {{0.5, 1, 1}, {0, 2, 1}, {1, 2, 2}};
+  tree.models = {1, 2, 3, -1, 1, 4, 5, 6, -2, 2};
+  forest.add(pack(tree));
+  Archive good;
+  forest.save(good);
+  Damages damages = damages_of_shape();
+  const Damages more = {
+      {"number of scales", [](Archive& a) { a.put("scales", std::vector<double>{0}); }},
+      {"scale that is not finite",
+       [](Archive& a) {
+         a.put("scales", std::vector<double>{0, kNaN});
+       }},
+      {"differ in length",
+       [](Archive& a) {
+         a.put("links", Ints{1, 2});
+       }},
+      {"number of trees", [](Archive& a) { a.put("roots", Shape{}); }},
+      {"does not exist", [](Archive& a) { a.put("roots", Shape{3}); }},
+      {"does not exist", [](Archive& a) { a.put("roots", Shape{-1}); }},
+      {"does not exist", [](Archive& a) { a.put("links", changed(a, "links", 0, link(1, 2))); }},
+      {"used twice",
+       [](Archive& a) {
+         a.put("roots", Shape{0, 1});
+       }},
+      {"that no tree reaches", [](Archive& a) { a.put("roots", Shape{1}); }},
+      {"not finite", [](Archive& a) { a.put("values", changed(a, "values", 0, static_cast<float>(kNaN))); }},
+      {"a split of no input", [](Archive& a) { a.put("links", changed(a, "links", 0, link(3, 1))); }},
+      {"a leaf with children", [](Archive& a) { a.put("links", changed(a, "links", 0, link(2, 1))); }},
+      {"or a split without", [](Archive& a) { a.put("links", changed(a, "links", 1, link(1, 0))); }},
+      {"size of its leaf models", [](Archive& a) { a.put("models", std::vector<double>(11)); }},
+      {"model that is not finite", [](Archive& a) { a.put("models", changed(a, "models", 1, kNaN)); }},
+      {"empty range", [](Archive& a) { a.put("models", changed(a, "models", 3, 1.5)); }},
+  };
+  damages.insert(damages.end(), more.begin(), more.end());
+  expect_refused(good, damages);
+}
+
+TEST(Forest, RefusesTreesThatAreTooDeep) {
+  Tree tree;
+  tree.inputs = 1;
+  for (int i = 0; i <= kMaxTreeDepth; ++i) {  // low children are leaves
+    tree.nodes.push_back({0.5, 0, 2 * i + 1});
+    tree.nodes.push_back({0, 1, 2 * i + 1});
+  }
+  tree.nodes.push_back({0, 1, 2 * kMaxTreeDepth + 2});
+  Archive archive;
+  forest_of({tree}).save(archive);
+  EXPECT_THROW(Forest::load(archive), std::runtime_error);
+}
+
+/// The arrays that version 0.1 wrote: two trees of one output, whose models are not in the order of leaves.
+Archive first_format(LeafModel leaf) {
+  Archive archive;
+  archive.put("shape", Shape{2, 1, leaf == LeafModel::linear ? 1 : 0});
+  archive.put("roots", Ints{0, 3});
+  const std::vector<double> constants{0.5, 1000.1, 1000.7, 1000.3}, rows{0.5, 2, 0, 1};
+  archive.put("values", leaf == LeafModel::linear ? rows : constants);
+  archive.put("features", Ints{1, 2, 2, 2});
+  archive.put("children", Ints{1, 1, 2, 3});
+  const std::vector<double> models{1, 2, 3, -10, 10, 4, 5, 6, -20, 20, 7, 8, 9, -30, 30};
+  archive.put("models", leaf == LeafModel::linear ? models : std::vector<double>{});
+  return archive;
+}
+
+TEST(Forest, ReadsTheFirstFormat) {
+  const Forest constant = Forest::load(first_format(LeafModel::constant));
+  EXPECT_EQ(constant.trees(), 2u);
+  EXPECT_NEAR(predict(constant, {0, 0.5})[0], 1000.2, 1e-6);
+  EXPECT_NEAR(predict(constant, {0, 0.6})[0], 1000.5, 1e-6);
+  const Forest linear = Forest::load(first_format(LeafModel::linear));
+  EXPECT_EQ(predict(linear, {0.25, 0}), std::vector<double>{(7 + 8 * 0.25 + 4 + 5 * 0.25) / 2});
+  EXPECT_EQ(predict(linear, {0.25, 1}), std::vector<double>{(1 + 2 * 0.25 + 3 + 4 + 5 * 0.25 + 6) / 2});
+  Archive archive;
+  linear.save(archive);
+  EXPECT_EQ(Forest::load(archive), linear) << "in the new format";
+}
+
+TEST(Forest, RefusesArraysOfTheFirstFormatThatMakeNone) {
+  Damages damages = damages_of_shape();
+  const Damages more = {
+      {"differ in length",
+       [](Archive& a) {
+         a.put("features", Ints{1, 2});
+       }},
+      {"number of trees", [](Archive& a) { a.put("roots", Ints{}); }},
+      {"does not exist", [](Archive& a) { a.put("roots", Ints{4}); }},
+      {"does not exist", [](Archive& a) { a.put("roots", Ints{-1}); }},
+      {"used twice",
+       [](Archive& a) {
+         a.put("roots", Ints{0, 1});
+       }},
+      {"that no tree reaches", [](Archive& a) { a.put("roots", Ints{3}); }},
+      {"not finite", [](Archive& a) { a.put("values", changed(a, "values", 0, kNaN)); }},
+      {"not finite", [](Archive& a) { a.put("values", changed(a, "values", 0, 1e300)); }},
+      {"a split of no input", [](Archive& a) { a.put("features", changed(a, "features", 0, -1)); }},
+      {"a split of no input", [](Archive& a) { a.put("features", changed(a, "features", 0, 3)); }},
+      {"do not follow", [](Archive& a) { a.put("children", changed(a, "children", 1, 0)); }},
+      {"a leaf with children", [](Archive& a) { a.put("children", changed(a, "children", 0, 0)); }},
+      {"without its model", [](Archive& a) { a.put("values", changed(a, "values", 2, 3.0)); }},
+      {"without its model", [](Archive& a) { a.put("values", changed(a, "values", 2, 0.5)); }},
+      {"model that is not finite", [](Archive& a) { a.put("models", changed(a, "models", 1, kNaN)); }},
+      {"empty range", [](Archive& a) { a.put("models", changed(a, "models", 3, 11.0)); }},
+  };
+  damages.insert(damages.end(), more.begin(), more.end());
+  expect_refused(first_format(LeafModel::linear), damages);
 }
 
 }  // namespace

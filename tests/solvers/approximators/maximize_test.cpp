@@ -34,12 +34,6 @@ Case random_case(std::uint64_t trial) {
   return made;
 }
 
-Forest forest_of(const std::vector<Tree>& trees) {
-  Forest forest(trees[0].inputs, 1, trees[0].leaf);
-  for (const Tree& tree : trees) forest.add(tree);
-  return forest;
-}
-
 /// The mean of the trees' leaves at `in` (which chooses the leaves), taken at x.
 double mean_at(const std::vector<Tree>& trees, const std::vector<double>& in, const std::vector<double>& x) {
   Prediction sum;

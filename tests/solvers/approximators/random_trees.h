@@ -75,8 +75,8 @@ inline std::vector<double> random_point(Stream& stream, const Box& box) {
 }
 
 /// Node of the leaf at x: x <= threshold goes low.
-inline std::int32_t leaf_at(const TreeView& tree, std::span<const double> x) {
-  std::int32_t node = tree.root;
+inline std::int32_t leaf_at(const Tree& tree, std::span<const double> x) {
+  std::int32_t node = 0;
   while (tree.nodes[node].child != node) {
     const TreeNode& split = tree.nodes[node];
     node = x[static_cast<std::size_t>(split.feature)] <= split.value ? split.child : split.child + 1;
@@ -92,16 +92,16 @@ struct Prediction {
   friend bool operator==(const Prediction&, const Prediction&) = default;
 };
 
-inline Prediction value_of_leaf(const TreeView& tree, std::int32_t leaf, std::span<const double> x) {
+inline Prediction value_of_leaf(const Tree& tree, std::int32_t leaf, std::span<const double> x) {
   const double constant = tree.nodes[leaf].value;
   if (tree.leaf == LeafModel::constant) return {constant, constant, constant};
-  const double* model = tree.models + static_cast<std::size_t>(constant) * (tree.inputs + 3);
+  const double* model = tree.models.data() + static_cast<std::size_t>(constant) * (tree.inputs + 3);
   double value = model[0];
   for (std::size_t i = 0; i < tree.inputs; ++i) value += model[1 + i] * x[i];
   return {value, model[tree.inputs + 1], model[tree.inputs + 2]};
 }
 
-inline Prediction predict(const TreeView& tree, std::span<const double> x) {
+inline Prediction predict(const Tree& tree, std::span<const double> x) {
   return value_of_leaf(tree, leaf_at(tree, x), x);
 }
 
@@ -111,6 +111,20 @@ inline std::vector<std::int32_t> leaves_of(const Tree& tree, std::int32_t node =
   const std::vector<std::int32_t> high = leaves_of(tree, tree.nodes[node].child + 1);
   leaves.insert(leaves.end(), high.begin(), high.end());
   return leaves;
+}
+
+/// A forest of one output, without rounding for the trees above.
+inline Forest forest_of(const std::vector<Tree>& trees) {
+  Forest forest(trees[0].inputs, {OutputScale{}}, trees[0].leaf);
+  for (const Tree& tree : trees) forest.add(pack(tree));
+  return forest;
+}
+
+/// A forest's tree in double precision.
+inline Tree unpacked(const ForestTree& tree) {
+  Tree out;
+  project(tree, {}, Box::everything(tree.inputs), out);
+  return out;
 }
 
 /// A cell of a box: no threshold lies inside. Its high corner belongs to it, its low one only where the box

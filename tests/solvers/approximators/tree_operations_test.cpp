@@ -42,7 +42,8 @@ TEST(Projection, IsTheTreeAsAFunctionOfItsLastInputs) {
     const Tree tree = random_tree(stream, {inputs, kLeaves[trial % 2], 6});
     const Box box = random_box(stream, inputs - fixed);
     const std::vector<double> prefix = random_point(stream, random_box(stream, fixed));
-    project(tree, prefix, box, projected);
+    const Forest forest = forest_of({tree});
+    project(forest.tree(0, 0), prefix, box, projected);
     ASSERT_EQ(projected.inputs, inputs - fixed);
     ASSERT_LE(projected.nodes.size(), tree.nodes.size());
     expect_all_leaves_are_reached(projected, box, 0, box);
@@ -99,7 +100,8 @@ TEST(WeightedAverage, OfATreeWithItselfHasItsLeaves) {
     Stream stream = stream_of(trial);
     const Box box = random_box(stream, 2);
     Tree tree;
-    project(random_tree(stream, {2, LeafModel::constant, 5}), {}, box, tree);  // drops what is never reached
+    const Forest forest = forest_of({random_tree(stream, {2, LeafModel::constant, 5})});
+    project(forest.tree(0, 0), {}, box, tree);  // drops what is never reached
     weighted_average(tree, tree, 2, 1, box, average);
     EXPECT_EQ(average.nodes.size(), tree.nodes.size());
   }

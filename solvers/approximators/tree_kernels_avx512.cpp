@@ -1,0 +1,213 @@
+#include "solvers/approximators/tree_kernels.h"
+
+#if defined(__x86_64__)
+
+#include <immintrin.h>
+
+#include <bit>
+#include <cstring>
+#include <limits>
+
+// Only what follows is compiled for AVX-512, and it calls nothing from outside, so that no other code of the
+// program can end up with instructions that a processor lacks.
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,popcnt"))), \
+                             apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512bw,avx512dq,avx512vl,popcnt")
+#endif
+
+namespace coppice {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::size_t kColumnsAtOnce = 8;
+
+using Floats = __m512;
+using Mask = __mmask16;
+using Counts = std::size_t;
+struct Doubles {
+  __m512d low;
+  __m512d high;
+};
+
+inline Mask first(std::size_t size) {
+  return static_cast<Mask>((1u << size) - 1);
+}
+inline Mask both(Mask a, Mask b) {
+  return static_cast<Mask>(a & b);
+}
+inline Floats all(float value) {
+  return _mm512_set1_ps(value);
+}
+inline Floats load(const float* from) {
+  return _mm512_loadu_ps(from);
+}
+inline Floats load_part(const float* from, Mask mask, Floats other) {
+  return _mm512_mask_loadu_ps(other, mask, from);
+}
+inline void store(float* to, Floats values) {
+  _mm512_storeu_ps(to, values);
+}
+inline Floats add(Floats a, Floats b) {
+  return _mm512_add_ps(a, b);
+}
+inline Floats sub(Floats a, Floats b) {
+  return _mm512_sub_ps(a, b);
+}
+inline Floats mul(Floats a, Floats b) {
+  return _mm512_mul_ps(a, b);
+}
+inline Floats min(Floats a, Floats b) {
+  return _mm512_min_ps(a, b);
+}
+inline Floats max(Floats a, Floats b) {
+  return _mm512_max_ps(a, b);
+}
+inline Floats root_of(Floats a) {
+  return _mm512_sqrt_ps(a);
+}
+inline Mask at_most(Floats x, Floats threshold) {
+  return _mm512_cmp_ps_mask(x, threshold, _CMP_LE_OQ);
+}
+inline Floats add_where(Floats a, Mask mask, Floats b) {
+  return _mm512_mask_add_ps(a, mask, a, b);
+}
+inline Floats keep(Mask mask, Floats a) {
+  return _mm512_maskz_mov_ps(mask, a);
+}
+inline Counts no_counts() {
+  return 0;
+}
+inline Counts add_count(Counts counts, Mask mask) {
+  return counts + static_cast<Counts>(__builtin_popcount(mask));
+}
+inline std::size_t counted(Counts counts) {
+  return counts;
+}
+inline float total(Floats a) {
+  const __m256 b = _mm256_add_ps(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps(a, 1));
+  const __m128 c = _mm_add_ps(_mm256_castps256_ps128(b), _mm256_extractf128_ps(b, 1));
+  const __m128 d = _mm_add_ps(c, _mm_movehl_ps(c, c));
+  return _mm_cvtss_f32(_mm_add_ss(d, _mm_movehdup_ps(d)));
+}
+inline float least(Floats a) {
+  const __m256 b = _mm256_min_ps(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps(a, 1));
+  const __m128 c = _mm_min_ps(_mm256_castps256_ps128(b), _mm256_extractf128_ps(b, 1));
+  const __m128 d = _mm_min_ps(c, _mm_movehl_ps(c, c));
+  return _mm_cvtss_f32(_mm_min_ss(d, _mm_movehdup_ps(d)));
+}
+inline float most(Floats a) {
+  const __m256 b = _mm256_max_ps(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps(a, 1));
+  const __m128 c = _mm_max_ps(_mm256_castps256_ps128(b), _mm256_extractf128_ps(b, 1));
+  const __m128 d = _mm_max_ps(c, _mm_movehl_ps(c, c));
+  return _mm_cvtss_f32(_mm_max_ss(d, _mm_movehdup_ps(d)));
+}
+inline Doubles no_doubles() {
+  return {_mm512_setzero_pd(), _mm512_setzero_pd()};
+}
+inline Doubles widened(Floats a) {
+  return {_mm512_cvtps_pd(_mm512_castps512_ps256(a)), _mm512_cvtps_pd(_mm512_extractf32x8_ps(a, 1))};
+}
+inline Doubles add(Doubles a, Floats b) {
+  const Doubles wide = widened(b);
+  return {_mm512_add_pd(a.low, wide.low), _mm512_add_pd(a.high, wide.high)};
+}
+inline Doubles add_product(Doubles a, Floats b, Floats c) {
+  const Doubles x = widened(b);
+  const Doubles y = widened(c);
+  return {_mm512_add_pd(a.low, _mm512_mul_pd(x.low, y.low)),
+          _mm512_add_pd(a.high, _mm512_mul_pd(x.high, y.high))};
+}
+inline double total(Doubles a) {
+  const __m512d sum = _mm512_add_pd(a.low, a.high);
+  // The variants with a mask, as those without make g++ 12 warn of its own headers.
+  const __m256d b =
+      _mm256_add_pd(_mm512_maskz_extractf64x4_pd(0xf, sum, 0), _mm512_maskz_extractf64x4_pd(0xf, sum, 1));
+  const __m128d c = _mm_add_pd(_mm256_castpd256_pd128(b), _mm256_extractf128_pd(b, 1));
+  return _mm_cvtsd_f64(_mm_add_sd(c, _mm_unpackhi_pd(c, c)));
+}
+inline float* aligned(float* work) {
+  return reinterpret_cast<float*>((reinterpret_cast<std::uintptr_t>(work) + 63) / 64 * 64);
+}
+
+#include "solvers/approximators/tree_kernels_body.h"
+
+void round_up(const double* from, std::size_t size, float* to) {
+  const __m256 zero = _mm256_setzero_ps();  // makes 0 of -0
+  for (std::size_t i = 0; i < size; i += 8) {
+    const auto mask = static_cast<__mmask8>(size - i < 8 ? (1u << (size - i)) - 1 : 0xff);
+    const __m512d values = _mm512_maskz_loadu_pd(mask, from + i);
+    const __m256 rounded = _mm512_cvt_roundpd_ps(values, _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC);
+    _mm256_mask_storeu_ps(to + i, mask, _mm256_add_ps(rounded, zero));
+  }
+}
+
+// One column, by a split along x.
+void partition_column(const float* x, float threshold, std::size_t size, float* values, float* scratch) {
+  const Floats t = all(threshold);
+  std::size_t low = 0;
+  std::size_t high = 0;
+  std::size_t i = 0;
+  for (; i + kLanes <= size; i += kLanes) {
+    const Mask mask = at_most(load(x + i), t);
+    const Floats v = load(values + i);
+    store(values + low, _mm512_maskz_compress_ps(mask, v));
+    store(scratch + high, _mm512_maskz_compress_ps(static_cast<Mask>(~mask), v));
+    const auto count = static_cast<std::size_t>(__builtin_popcount(mask));
+    low += count;
+    high += kLanes - count;
+  }
+  if (i < size) {
+    const Mask valid = first(size - i);
+    const Mask mask = both(valid, at_most(load(x + i), t));
+    const auto rest = static_cast<Mask>(valid & ~mask);
+    const Floats v = load(values + i);
+    const auto count = static_cast<std::size_t>(__builtin_popcount(mask));
+    _mm512_mask_storeu_ps(values + low, first(count), _mm512_maskz_compress_ps(mask, v));
+    store(scratch + high, _mm512_maskz_compress_ps(rest, v));
+    low += count;
+    high += size - i - count;
+  }
+  std::memcpy(values + low, scratch, high * sizeof(float));
+}
+
+void partition(const SampleBlock& block, std::uint32_t feature, float threshold, float* scratch) {
+  float* x = block.column(feature);
+  for (std::size_t c = 0; c < block.width(); ++c) {
+    if (c != feature) partition_column(x, threshold, block.size(), block.column(c), scratch);
+  }
+  partition_column(x, threshold, block.size(), x, scratch);
+}
+
+}  // namespace
+
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+
+const TreeKernels* avx512_tree_kernels() {
+  static constexpr TreeKernels kKernels = {"avx512",       round_up,  sum_outputs, find_ranges,
+                                           find_low_sides, partition, low_products};
+  const bool runs = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                    __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+                    __builtin_cpu_supports("popcnt");
+  return runs ? &kKernels : nullptr;
+}
+
+}  // namespace coppice
+
+#else
+
+namespace coppice {
+
+const TreeKernels* avx512_tree_kernels() {
+  return nullptr;
+}
+
+}  // namespace coppice
+
+#endif
