@@ -35,7 +35,9 @@ cat >"$work/unit.xml" <<XML
 <experiment coppice="1" name="unit">
   <problem id="plant"><double_integrator/></problem>
   <collect id="samples" problem="plant" samples="200000"/>
-  <train id="learned" problem="plant" samples="samples" time_limit="0.2 s"><fqi iterations="1"/></train>
+  <train id="learned" problem="plant" samples="samples" time_limit="0.2 s">
+    <fqi iterations="1"><q_value><extra_trees trees="500"/></q_value></fqi>
+  </train>
 </experiment>
 XML
 "$runner" "$work/unit.xml" --out "$work/unit" >"$work/log" 2>&1 && fail "a node far over its time limit counts as done"
