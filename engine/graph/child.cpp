@@ -174,11 +174,19 @@ void die_with_parent() {
 void limit_memory(double bytes) {
   ::mallopt(M_ARENA_MAX, 1);  // others would reserve 64 MB each, which count although they are not used
   const double reserved = own_memory("VmSize") - own_memory("VmRSS");
-  const auto limit = static_cast<rlim_t>(reserved + bytes);
-  const rlimit both{limit, limit};
-  if (::setrlimit(RLIMIT_AS, &both) != 0) {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_AS, &limit);
+  limit.rlim_cur = std::min(static_cast<rlim_t>(reserved + bytes), limit.rlim_max);
+  if (::setrlimit(RLIMIT_AS, &limit) != 0) {
     throw std::runtime_error(fmt::format("cannot limit the memory: {}", std::strerror(errno)));
   }
+}
+
+void release_memory_limit() {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_AS, &limit);
+  limit.rlim_cur = limit.rlim_max;
+  ::setrlimit(RLIMIT_AS, &limit);
 }
 
 double peak_memory() {

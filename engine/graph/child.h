@@ -31,6 +31,8 @@ void die_with_parent();
 /// Lets allocations fail (std::bad_alloc) when this process uses `bytes` of memory more than what it only
 /// reserved so far. To be called when its threads have been started.
 void limit_memory(double bytes);
+/// Takes this limit back: to say that memory ran out takes some.
+void release_memory_limit();
 /// Most memory that this process has used, in bytes.
 double peak_memory();
 

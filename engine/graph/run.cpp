@@ -217,6 +217,7 @@ void run_node(const fs::path& run_folder, const std::string& key, const RunOptio
   Task task;
   task.work = [&](TaskParallel& parallel) {
     const auto out_of_memory = [&] {
+      release_memory_limit();
       return std::runtime_error(
           fmt::format("ran out of memory: its memory_limit is {}; it had {} and needed more",
                       memory_text(limit), memory_text(peak_memory())));
