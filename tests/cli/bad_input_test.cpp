@@ -257,8 +257,10 @@ TEST_F(BadInput, ClosedStreamsLeaveFilesAlone) {
       EXPECT_TRUE(contains(script("head -c 15 out/index.sqlite").out, "SQLite format 3"));
     }
   }
-  folder_.write("bad.csv", "value\n");
-  write("<dataset id=\"s\" problem=\"car\" file=\"bad.csv\"/>");
+  folder_.write("bad.csv",
+                "episode,step,s_position,s_speed,action_id,a_acceleration,reward,n_position,n_speed,"
+                "terminal\n");
+  write("<dataset id=\"s\" problem=\"car\" file=\"bad.csv\"/>");  // no rows: found when it runs
   for (const std::string closed : {"> paths", ">&-", "> /dev/full", "| true"})
     EXPECT_EQ(script("set -o pipefail; runner e.xml --out failed " + closed).status, 1) << closed;
   for (const std::string command : {"list", "schema", "expand e.xml", "plan e.xml", "status", "--help"}) {
