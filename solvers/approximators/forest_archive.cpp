@@ -63,8 +63,9 @@ ForestNode converted(const FirstFormat& old, std::size_t i, std::size_t inputs, 
   }
   const double value = old.values[i];
   if (leaf == LeafModel::constant) return ForestNode::leaf(inputs, 0);
-  const auto rows = static_cast<double>(old.models.size() / model_width(inputs));
-  if (!(value >= 0 && value < rows && value == std::floor(value))) invalid("a leaf without its model");
+  const std::size_t rows = old.models.size() / model_width(inputs);
+  if (!(value >= 0 && value < static_cast<double>(rows) && value == std::floor(value)))
+    invalid("a leaf without its model");
   return ForestNode::linear_leaf(inputs, static_cast<std::uint32_t>(value));
 }
 

@@ -75,9 +75,6 @@ inline void store(float* to, Floats values) {
 inline Floats add(Floats a, Floats b) {
   return each<Floats>([&](std::size_t i) { return a.part[i] + b.part[i]; });
 }
-inline Floats sub(Floats a, Floats b) {
-  return each<Floats>([&](std::size_t i) { return a.part[i] - b.part[i]; });
-}
 inline Floats mul(Floats a, Floats b) {
   return each<Floats>([&](std::size_t i) { return a.part[i] * b.part[i]; });
 }
@@ -198,11 +195,11 @@ const TreeKernels& portable_tree_kernels() {
 }
 
 const TreeKernels& tree_kernels() {
-  static const TreeKernels& kKernels = []() -> const TreeKernels& {
+  static const TreeKernels* const kFastest = [] {
     const TreeKernels* fast = std::getenv("COPPICE_PORTABLE") == nullptr ? avx512_tree_kernels() : nullptr;
-    return fast != nullptr ? *fast : portable_tree_kernels();
+    return fast != nullptr ? fast : &portable_tree_kernels();
   }();
-  return kKernels;
+  return *kFastest;
 }
 
 }  // namespace coppice
