@@ -75,6 +75,9 @@ inline void store(float* to, Floats values) {
 inline Floats add(Floats a, Floats b) {
   return each<Floats>([&](std::size_t i) { return a.part[i] + b.part[i]; });
 }
+inline Floats sub(Floats a, Floats b) {
+  return each<Floats>([&](std::size_t i) { return a.part[i] - b.part[i]; });
+}
 inline Floats mul(Floats a, Floats b) {
   return each<Floats>([&](std::size_t i) { return a.part[i] * b.part[i]; });
 }
