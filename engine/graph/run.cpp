@@ -214,29 +214,30 @@ void run_node(const fs::path& run_folder, const std::string& key, const RunOptio
   Pool pool(static_cast<std::size_t>(options.threads), options.stop);
   const double limit = node->node->memory_limit;
   if (limit > 0) limit_memory(limit);
-  Task task;
-  task.work = [&](TaskParallel& parallel) {
-    const auto out_of_memory = [&] {
-      release_memory_limit();
-      return std::runtime_error(
-          fmt::format("ran out of memory: its memory_limit is {}; it had {} and needed more",
-                      memory_text(limit), memory_text(peak_memory())));
-    };
-    try {
-      compute_node(plan, index, run_folder, store, parallel, [](const RunningContext*) {});
-    } catch (const std::bad_alloc&) {
-      if (limit <= 0) throw;
-      throw out_of_memory();
-    } catch (const Interrupted&) {
-      throw;
-    } catch (const std::runtime_error& error) {
-      if (limit <= 0 || peak_memory() < limit) throw;
-      // Whatever it was, it happened where even small calls of the system are refused their memory.
-      throw std::runtime_error(fmt::format("{} ({})", out_of_memory().what(), error.what()));
-    }
+  const auto out_of_memory = [&] {
+    release_memory_limit();
+    return std::runtime_error(
+        fmt::format("ran out of memory: its memory_limit is {}; it had {} and needed more",
+                    memory_text(limit), memory_text(peak_memory())));
   };
-  pool.submit(std::move(task));
-  pool.wait();
+  try {
+    Task task;
+    task.work = [&](TaskParallel& parallel) {
+      compute_node(plan, index, run_folder, store, parallel, [](const RunningContext*) {});
+    };
+    pool.submit(std::move(task));
+    pool.wait();
+  } catch (const std::bad_alloc&) {
+    if (limit <= 0) throw;
+    throw out_of_memory();
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    release_memory_limit();
+    if (limit <= 0 || peak_memory() < limit) throw;
+    // Whatever it was, it happened where even small calls of the system are refused their memory.
+    throw std::runtime_error(fmt::format("{} ({})", out_of_memory().what(), error.what()));
+  }
 }
 
 }  // namespace coppice
