@@ -22,9 +22,9 @@ namespace coppice {
 inline float rounded_up(double x) {
   const auto nearest = static_cast<float>(x);
   const auto bits = std::bit_cast<std::int32_t>(nearest);
-  const std::int32_t above = bits >= 0 ? bits + 1 : bits - 1;
-  const float up = static_cast<double>(nearest) < x ? std::bit_cast<float>(above) : nearest;
-  return up + 0.0F;  // makes 0 of -0
+  const std::int32_t is_below = static_cast<double>(nearest) < x ? 1 : 0;
+  const std::int32_t next = bits >= 0 ? 1 : -1;
+  return std::bit_cast<float>(bits + is_below * next) + 0.0F;  // makes 0 of -0
 }
 
 /// One node of a packed tree, 8 bytes. A split sends x[feature] <= value to the node `ahead` places after it
