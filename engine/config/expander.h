@@ -57,7 +57,7 @@ class Expander {
 
     Origin() = default;
     Origin(const Element& met, const Context& context);
-    auto operator<=>(const Origin&) const = default;
+    auto operator<=>(const Origin&) const = default;  // NOLINT(modernize-use-nullptr): it means the 0
   };
   struct DefinedSweep {
     Origin origin;
