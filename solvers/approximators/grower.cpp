@@ -123,7 +123,7 @@ double Grower::variance() const {
 // The child with fewer samples is made first: the other one's children are not further ahead than it has
 // nodes.
 void Grower::make_split(const Task& task, const Candidate& split) {
-  kernels_.partition(block_, split.feature, split.threshold, scratch_.data());
+  kernels_.partition(block_, split.feature, split.threshold, scratch_.data(), scratch_.size());
   const auto child = static_cast<std::uint32_t>(tree_.nodes.size());
   tree_.nodes[task.node] = ForestNode::split(split.feature, split.threshold, ahead(task.node));
   tree_.nodes.resize(tree_.nodes.size() + 2);

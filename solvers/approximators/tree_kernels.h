@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace coppice {
 
@@ -42,8 +43,8 @@ struct OutputSums {
   float most = 0;
 };
 
-/// The loops of training over samples, once for processors with AVX-512 and once for all others. Both give
-/// the same bits: sums run in kLanes lanes that are added up pairwise in the end.
+/// The loops of training over samples, once for processors with AVX-512, once for those with AVX2 and once
+/// for all others. All give the same bits: sums run in kLanes lanes that are added up pairwise in the end.
 struct TreeKernels {
   const char* name;
 
@@ -54,8 +55,10 @@ struct TreeKernels {
   void (*find_ranges)(const SampleBlock& block, Candidate* candidates, std::size_t size);
   /// Sets count, weight and sum of each candidate. Sums are rounded to single precision on the way.
   void (*find_low_sides)(const SampleBlock& block, Candidate* candidates, std::size_t size);
-  /// Moves the low side before the high one, both in their order. `scratch` has room for a column.
-  void (*partition)(const SampleBlock& block, std::uint32_t feature, float threshold, float* scratch);
+  /// Moves the low side before the high one, both in their order. `scratch` has room for `scratch_size`
+  /// numbers, the rows of the block and kLanes more at least; more room is used.
+  void (*partition)(const SampleBlock& block, std::uint32_t feature, float threshold, float* scratch,
+                    std::size_t scratch_size);
   /// Sums of products w u v over the low side of a split for each pair of u and v among 1, the inputs and the
   /// output, the latter two about `centre` (inputs + 1 numbers): a lower triangle, row after row, in single
   /// precision on the way. `work` has room for product_work(inputs) numbers.
@@ -73,10 +76,14 @@ constexpr std::size_t product_work(std::size_t inputs) {
   return kLanes + (inputs + 2) * kProductRows + triangle(inputs + 2) * kLanes;
 }
 
-/// The fastest for this processor; the environment variable COPPICE_PORTABLE asks for those of any processor.
+/// The fastest for this processor; the environment variable COPPICE_KERNELS asks for others by their name
+/// ("avx512", "avx2", "portable"), and gets the fastest when this processor has none of that name.
 const TreeKernels& tree_kernels();
 const TreeKernels& portable_tree_kernels();
 /// Null where the processor cannot run them.
+const TreeKernels* avx2_tree_kernels();
 const TreeKernels* avx512_tree_kernels();
+/// All that this processor can run, the fastest first.
+std::vector<const TreeKernels*> usable_tree_kernels();
 
 }  // namespace coppice

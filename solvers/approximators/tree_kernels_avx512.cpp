@@ -173,7 +173,8 @@ void partition_column(const float* x, float threshold, std::size_t size, float* 
   std::memcpy(values + low, scratch, high * sizeof(float));
 }
 
-void partition(const SampleBlock& block, std::uint32_t feature, float threshold, float* scratch) {
+void partition(const SampleBlock& block, std::uint32_t feature, float threshold, float* scratch,
+               std::size_t) {
   float* x = block.column(feature);
   for (std::size_t c = 0; c < block.width(); ++c) {
     if (c != feature) partition_column(x, threshold, block.size(), block.column(c), scratch);

@@ -1,6 +1,6 @@
 // The loops of TreeKernels over `Floats`, `Mask` and `Counts` of kLanes lanes. Included by each of the
-// sources that define these, inside their namespace, so no guard and no includes: tree_kernels_portable.cpp
-// and tree_kernels_avx512.cpp.
+// sources that define these, inside their namespace, so no guard and no includes: tree_kernels_portable.cpp,
+// tree_kernels_avx2.cpp and tree_kernels_avx512.cpp.
 
 constexpr std::size_t kBlockVectors = 256;  // sums in single precision are flushed to double after so many
 

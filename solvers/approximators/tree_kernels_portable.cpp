@@ -181,7 +181,8 @@ void partition_column(const float* x, float threshold, std::size_t size, float* 
   std::copy(scratch, scratch + high, values + low);
 }
 
-void partition(const SampleBlock& block, std::uint32_t feature, float threshold, float* scratch) {
+void partition(const SampleBlock& block, std::uint32_t feature, float threshold, float* scratch,
+               std::size_t) {
   float* x = block.column(feature);
   for (std::size_t c = 0; c < block.width(); ++c) {
     if (c != feature) partition_column(x, threshold, block.size(), block.column(c), scratch);
@@ -197,12 +198,24 @@ const TreeKernels& portable_tree_kernels() {
   return kKernels;
 }
 
+std::vector<const TreeKernels*> usable_tree_kernels() {
+  std::vector<const TreeKernels*> usable;
+  for (const TreeKernels* kernels : {avx512_tree_kernels(), avx2_tree_kernels(), &portable_tree_kernels()}) {
+    if (kernels != nullptr) usable.push_back(kernels);
+  }
+  return usable;
+}
+
 const TreeKernels& tree_kernels() {
-  static const TreeKernels* const kFastest = [] {
-    const TreeKernels* fast = std::getenv("COPPICE_PORTABLE") == nullptr ? avx512_tree_kernels() : nullptr;
-    return fast != nullptr ? fast : &portable_tree_kernels();
+  static const TreeKernels* const kChosen = [] {
+    const std::vector<const TreeKernels*> usable = usable_tree_kernels();
+    const char* wanted = std::getenv("COPPICE_KERNELS");
+    for (const TreeKernels* kernels : usable) {
+      if (wanted != nullptr && std::strcmp(wanted, kernels->name) == 0) return kernels;
+    }
+    return usable.front();
   }();
-  return *kFastest;
+  return *kChosen;
 }
 
 }  // namespace coppice

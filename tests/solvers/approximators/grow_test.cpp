@@ -418,7 +418,8 @@ TEST(Grow, IsTheSameOnAllProcessorsAndThreads) {
     growth.min_variance = trial % 7 == 0 ? 0.1 : 0;
     const Draws draws = kDraws.fork("trial", trial);
     const Forest forest = grow(samples, growth, 4, draws, portable_tree_kernels());
-    ASSERT_EQ(grow(samples, growth, 4, draws), forest) << "trial " << trial;
+    for (const TreeKernels* kernels : usable_tree_kernels())
+      ASSERT_EQ(grow(samples, growth, 4, draws, *kernels), forest) << kernels->name << ", trial " << trial;
     Threads threads(3);
     ASSERT_EQ(grow_forest(samples.set(), growth, 4, draws, threads), forest) << "trial " << trial;
   }

@@ -58,12 +58,6 @@ void for_random_blocks(Test test) {
   }
 }
 
-std::vector<const TreeKernels*> all_kernels() {
-  std::vector<const TreeKernels*> kernels = {&portable_tree_kernels()};
-  if (avx512_tree_kernels() != nullptr) kernels.push_back(avx512_tree_kernels());
-  return kernels;
-}
-
 template <class Number>
 auto bits_of(Number number) {
   if constexpr (sizeof(Number) == 8) {
@@ -79,7 +73,7 @@ TEST(TreeKernels, RoundUp) {
     std::vector<double> from(size);
     for (double& x : from) x = stream.normal() * std::exp2(stream.uniform(-160, 130));
     if (size > 3) from[3] = -1e-60;
-    for (const TreeKernels* kernels : all_kernels()) {
+    for (const TreeKernels* kernels : usable_tree_kernels()) {
       std::vector<float> to(size + 1, -7);
       kernels->round_up(from.data(), size, to.data());
       for (std::size_t i = 0; i < size; ++i)
@@ -103,7 +97,7 @@ TEST(TreeKernels, SumOutputs) {
     EXPECT_NEAR(expected.sum, sum, 1e-12 * weight);
     EXPECT_EQ(expected.least, *std::min_element(b.outputs(), b.outputs() + b.size()));
     EXPECT_EQ(expected.most, *std::max_element(b.outputs(), b.outputs() + b.size()));
-    for (const TreeKernels* kernels : all_kernels()) {
+    for (const TreeKernels* kernels : usable_tree_kernels()) {
       const OutputSums sums = kernels->sum_outputs(b);
       ASSERT_EQ(bits_of(sums.weight), bits_of(expected.weight)) << kernels->name;
       ASSERT_EQ(bits_of(sums.sum), bits_of(expected.sum)) << kernels->name;
@@ -124,7 +118,7 @@ std::vector<Candidate> candidates_for(const SampleBlock& block, Stream& stream) 
 
 TEST(TreeKernels, FindRanges) {
   for_random_blocks([](const Block& block, Stream& stream) {
-    for (const TreeKernels* kernels : all_kernels()) {
+    for (const TreeKernels* kernels : usable_tree_kernels()) {
       std::vector<Candidate> candidates = candidates_for(block.block, stream);
       kernels->find_ranges(block.block, candidates.data(), candidates.size());
       for (const Candidate& c : candidates) {
@@ -155,7 +149,7 @@ TEST(TreeKernels, FindLowSides) {
       EXPECT_NEAR(c.weight, weight, 1e-5 * weight);
       EXPECT_NEAR(c.sum, sum, 3e-5 * weight);
     }
-    for (const TreeKernels* kernels : all_kernels()) {
+    for (const TreeKernels* kernels : usable_tree_kernels()) {
       std::vector<Candidate> candidates = expected;
       for (Candidate& c : candidates) c.sum = c.weight = -1;
       kernels->find_low_sides(b, candidates.data(), candidates.size());
@@ -171,10 +165,11 @@ TEST(TreeKernels, FindLowSides) {
 TEST(TreeKernels, Partition) {
   for_random_blocks([](const Block& given, Stream& stream) {
     const Candidate split = candidates_for(given.block, stream)[0];
-    std::vector<float> scratch(given.block.size() + kLanes);
-    for (const TreeKernels* kernels : all_kernels()) {
+    const std::size_t columns = 1 + stream.below(given.block.width());  // that fit into the scratch
+    std::vector<float> scratch(columns * (given.block.size() + kLanes));
+    for (const TreeKernels* kernels : usable_tree_kernels()) {
       Block block = given;
-      kernels->partition(block.block, split.feature, split.threshold, scratch.data());
+      kernels->partition(block.block, split.feature, split.threshold, scratch.data(), scratch.size());
       std::vector<float> expected = given.columns;
       for (std::size_t c = 0; c < given.block.width(); ++c) {
         float* next = expected.data() + c * given.block.stride + given.block.begin;
@@ -214,7 +209,7 @@ TEST(TreeKernels, LowProducts) {
       }
     }
     for (std::size_t i = 0; i < sums.size(); ++i) ASSERT_NEAR(expected[i], sums[i], 1e-4 * weights);
-    for (const TreeKernels* kernels : all_kernels()) {
+    for (const TreeKernels* kernels : usable_tree_kernels()) {
       kernels->low_products(b, split.feature, split.threshold, centre.data(), work.data(), sums.data());
       for (std::size_t i = 0; i < sums.size(); ++i) {
         ASSERT_EQ(bits_of(sums[i]), bits_of(expected[i])) << kernels->name;
