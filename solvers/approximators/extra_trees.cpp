@@ -59,10 +59,11 @@ struct TreeParameters {
 };
 
 MadeFunction fit_forest(const TrainingSet& set, const TreeParameters& parameters, std::size_t trees,
-                        const Draws& draws, Parallel& parallel) {
+                        Aggregation aggregation, const Draws& draws, Parallel& parallel) {
   const auto absent = std::count(set.weights.begin(), set.weights.end(), 0.0);
   const Growth growth = parameters.growth(set.x.rows() - static_cast<std::size_t>(absent), set.x.columns());
   Forest forest = grow_forest(set, growth, trees, draws, parallel);
+  forest.aggregate_by(aggregation);
   return made<Function>(ForestFunction(std::move(forest)), ForestFunction::kName);
 }
 
@@ -70,13 +71,20 @@ MadeFunction fit_forest(const TrainingSet& set, const TreeParameters& parameters
 class ExtraTrees : public Approximator, public TreeParameters {
  public:
   int trees = 25;
+  Aggregation aggregation = Aggregation::mean;
 
   MadeFunction fit(const TrainingSet& set, const Draws& draws, Parallel& parallel) const override {
-    return fit_forest(set, *this, static_cast<std::size_t>(trees), draws, parallel);
+    return fit_forest(set, *this, static_cast<std::size_t>(trees), aggregation, draws, parallel);
   }
   static Parameters<ExtraTrees> parameters() {
-    return declare<ExtraTrees>().add("trees", &ExtraTrees::trees, "",
-                                     "Trees in the forest (the thesis's M, and m).", between(1, 100000));
+    return declare<ExtraTrees>()
+        .add("trees", &ExtraTrees::trees, "", "Trees in the forest (the thesis's M, and m).",
+             between(1, 100000))
+        .choice(
+            "aggregation", &ExtraTrees::aggregation, {"mean", "trimmed_mean"},
+            "What the forest makes of its trees' predictions: their mean, or the mean without the lowest "
+            "and the highest tenth (rounded up: 3 of 25 on each side). A trimmed mean cannot be merged into "
+            "a tree; its exact maximum needs constant leaves.");
   }
 };
 
@@ -84,7 +92,7 @@ class ExtraTrees : public Approximator, public TreeParameters {
 class RegressionTree : public Approximator, public TreeParameters {
  public:
   MadeFunction fit(const TrainingSet& set, const Draws& draws, Parallel& parallel) const override {
-    return fit_forest(set, *this, 1, draws, parallel);
+    return fit_forest(set, *this, 1, Aggregation::mean, draws, parallel);
   }
   static Parameters<RegressionTree> parameters() { return declare<RegressionTree>(); }
 };

@@ -109,26 +109,46 @@ void Forest::predict(std::span<const double> x, std::span<double> y) const {
   std::array<float, kMaxTreeInputs + 1> rounded;
   std::transform(x.begin(), x.end(), rounded.begin(), rounded_up);
   rounded[inputs_] = std::numeric_limits<float>::quiet_NaN();
-  const std::size_t count = trees();
   for (std::size_t output = 0; output < outputs(); ++output) {
-    const std::uint32_t* roots = roots_.data() + output * count;
-    double sum = 0;
-    if (leaf_ == LeafModel::constant) {
-      for_each_leaf(nodes_.data(), roots, count, rounded.data(),
-                    [&](std::uint32_t leaf) { sum += static_cast<double>(nodes_[leaf].value); });
-      y[output] = scales_[output].offset + scales_[output].scale * (sum / static_cast<double>(count));
-      continue;
-    }
-    double low = 0;
-    double high = 0;
-    for_each_leaf(nodes_.data(), roots, count, rounded.data(), [&](std::uint32_t leaf) {
-      sum += linear_value(leaf, x.data());
-      const double* range = models_.data() + nodes_[leaf].row() * model_width(inputs_) + inputs_ + 1;
-      low += range[0];
-      high += range[1];
-    });
-    y[output] = std::clamp(sum, low, high) / static_cast<double>(count);
+    y[output] = aggregation_ == Aggregation::mean ? mean(output, x.data(), rounded.data())
+                                                  : trimmed(output, x.data(), rounded.data());
   }
+}
+
+double Forest::mean(std::size_t output, const double* x, const float* rounded) const {
+  const std::size_t count = trees();
+  const std::uint32_t* roots = roots_.data() + output * count;
+  double sum = 0;
+  if (leaf_ == LeafModel::constant) {
+    for_each_leaf(nodes_.data(), roots, count, rounded,
+                  [&](std::uint32_t leaf) { sum += static_cast<double>(nodes_[leaf].value); });
+    return scales_[output].offset + scales_[output].scale * (sum / static_cast<double>(count));
+  }
+  double low = 0;
+  double high = 0;
+  for_each_leaf(nodes_.data(), roots, count, rounded, [&](std::uint32_t leaf) {
+    sum += linear_value(leaf, x);
+    const double* range = models_.data() + nodes_[leaf].row() * model_width(inputs_) + inputs_ + 1;
+    low += range[0];
+    high += range[1];
+  });
+  return std::clamp(sum, low, high) / static_cast<double>(count);
+}
+
+double Forest::trimmed(std::size_t output, const double* x, const float* rounded) const {
+  thread_local std::vector<double> values;
+  values.clear();
+  const std::size_t count = trees();
+  for_each_leaf(nodes_.data(), roots_.data() + output * count, count, rounded, [&](std::uint32_t leaf) {
+    if (leaf_ == LeafModel::constant) {
+      values.push_back(static_cast<double>(nodes_[leaf].value));
+    } else {
+      const double* range = models_.data() + nodes_[leaf].row() * model_width(inputs_) + inputs_ + 1;
+      values.push_back(std::clamp(linear_value(leaf, x), range[0], range[1]));
+    }
+  });
+  const double value = trimmed_mean(values);
+  return leaf_ == LeafModel::constant ? scales_[output].offset + scales_[output].scale * value : value;
 }
 
 }  // namespace coppice

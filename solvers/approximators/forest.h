@@ -11,6 +11,7 @@
 
 #include "engine/vocabulary/archive.h"
 #include "engine/vocabulary/matrix.h"
+#include "solvers/approximators/aggregation.h"
 #include "solvers/approximators/tree.h"
 
 namespace coppice {
@@ -104,7 +105,8 @@ struct ForestTree {
 };
 
 /// Regression forests for one or several outputs, one after the other, each the mean of its trees (thesis,
-/// Eq. 2.2): all nodes in one array, children after their parents.
+/// Eq. 2.2) or their trimmed mean: all nodes in one array, children after their parents. The mean of linear
+/// models is held in the mean of their ranges; a trimmed mean is one of models that are held in their own.
 class Forest {
  public:
   Forest() = default;
@@ -117,14 +119,16 @@ class Forest {
   std::size_t inputs() const { return inputs_; }
   std::size_t outputs() const { return scales_.size(); }
   LeafModel leaf() const { return leaf_; }
+  Aggregation aggregation() const { return aggregation_; }
+  void aggregate_by(Aggregation aggregation) { aggregation_ = aggregation; }
   /// Trees of one output.
   std::size_t trees() const { return scales_.empty() ? 0 : roots_.size() / scales_.size(); }
   ForestTree tree(std::size_t output, std::size_t index) const;
   std::size_t leaves() const { return (nodes_.size() + roots_.size()) / 2; }
 
-  /// The values of all outputs at x. Does not allocate.
+  /// The values of all outputs at x. Does not allocate; for trimmed means, a thread's first call may.
   void predict(std::span<const double> x, std::span<double> y) const;
-  /// The same for rows of x, to rows of y; faster. Does not allocate.
+  /// The same for rows of x, to rows of y; faster. Allocates as little.
   void predict_batch(const Matrix& x, Matrix& y) const;
 
   void save(Archive& archive) const;
@@ -137,10 +141,13 @@ class Forest {
   static Forest load_first_format(const Archive& archive, std::size_t inputs, std::size_t outputs,
                                   LeafModel leaf);
   double linear_value(std::uint32_t leaf, const double* x) const;
+  double mean(std::size_t output, const double* x, const float* rounded) const;
+  double trimmed(std::size_t output, const double* x, const float* rounded) const;
   void check() const;
 
   std::size_t inputs_ = 0;
   LeafModel leaf_ = LeafModel::constant;
+  Aggregation aggregation_ = Aggregation::mean;
   std::vector<OutputScale> scales_;
   std::vector<ForestNode> nodes_;
   std::vector<double> models_;

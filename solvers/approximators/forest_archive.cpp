@@ -81,9 +81,11 @@ void Forest::save(Archive& archive) const {
     values[i] = has_row ? 0.0F : nodes_[i].value;
     links[i] = std::bit_cast<std::int32_t>(nodes_[i].link);
   }
-  archive.put("shape", std::vector<std::int64_t>{static_cast<std::int64_t>(inputs_),
-                                                 static_cast<std::int64_t>(outputs()),
-                                                 static_cast<std::int64_t>(leaf_)});
+  std::vector<std::int64_t> shape = {static_cast<std::int64_t>(inputs_), static_cast<std::int64_t>(outputs()),
+                                     static_cast<std::int64_t>(leaf_)};
+  // Versions that know no other aggregation than the mean read forests of means, and refuse others.
+  if (aggregation_ != Aggregation::mean) shape.push_back(static_cast<std::int64_t>(aggregation_));
+  archive.put("shape", std::move(shape));
   archive.put("scales", std::move(scales));
   archive.put("roots", std::vector<std::int64_t>(roots_.begin(), roots_.end()));
   archive.put("values", std::move(values));
@@ -93,10 +95,11 @@ void Forest::save(Archive& archive) const {
 
 Forest Forest::load(const Archive& archive) {
   const auto& shape = archive.get<std::vector<std::int64_t>>("shape");
-  if (shape.size() != 3) invalid("its shape needs three numbers");
+  if (shape.size() != 3 && shape.size() != 4) invalid("its shape needs three or four numbers");
   if (shape[0] < 0 || shape[0] > static_cast<std::int64_t>(kMaxTreeInputs)) invalid("number of inputs");
   if (shape[1] < 1 || shape[1] > std::numeric_limits<std::int32_t>::max()) invalid("number of outputs");
   if (shape[2] != 0 && shape[2] != 1) invalid("unknown kind of leaf");
+  if (shape.size() == 4 && shape[3] != 0 && shape[3] != 1) invalid("unknown aggregation");
   const auto inputs = static_cast<std::size_t>(shape[0]);
   const auto outputs = static_cast<std::size_t>(shape[1]);
   const auto leaf = static_cast<LeafModel>(shape[2]);
@@ -109,6 +112,7 @@ Forest Forest::load(const Archive& archive) {
   if (scales.size() != 2 * outputs) invalid("number of scales");
   if (links.size() != values.size()) invalid("arrays differ in length");
   Forest forest(inputs, {}, leaf);
+  if (shape.size() == 4) forest.aggregation_ = static_cast<Aggregation>(shape[3]);
   for (std::size_t i = 0; i < outputs; ++i) forest.scales_.push_back({scales[2 * i], scales[2 * i + 1]});
   for (const std::int64_t root : roots) {
     if (root < 0 || root >= static_cast<std::int64_t>(values.size())) invalid("a node that does not exist");

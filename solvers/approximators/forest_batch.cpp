@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kAbreast = 8;
 constexpr std::size_t kMaxPoints = 256;
-constexpr std::size_t kNumbers = 4096;  // of the points that are looked at together
+constexpr std::size_t kNumbers = 4096;      // of the points that are looked at together
+constexpr std::size_t kAllNumbers = 16384;  // of their predictions by all trees
 static_assert(kAbreast * (kMaxTreeInputs + 1) <= kNumbers);
 
 /// Points that each tree is applied to while it is in the cache.
@@ -22,6 +23,7 @@ struct Points {
   std::array<double, kMaxPoints> sum;   // over trees
   std::array<double, kMaxPoints> low;   // for linear leaves
   std::array<double, kMaxPoints> high;
+  std::vector<double> all;  // for trimmed means: each point's predictions of all trees
 };
 
 void take(const Matrix& x, Points& points) {
@@ -58,45 +60,86 @@ void add_constants(const ForestTree& tree, Points& points) {
   });
 }
 
+double linear_value(const ForestTree& tree, const double* model, const Matrix& x, std::size_t row) {
+  double value = model[0];
+  for (std::size_t c = 0; c < tree.inputs; ++c) value += model[1 + c] * x(row, c);
+  return value;
+}
+
+// Held in its range.
+double held_value(const ForestTree& tree, const double* model, const Matrix& x, std::size_t row) {
+  return std::clamp(linear_value(tree, model, x, row), model[tree.inputs + 1], model[tree.inputs + 2]);
+}
+
 void add_linear(const ForestTree& tree, const Matrix& x, Points& points) {
   for_each_leaf(tree, points, [&](std::size_t point, std::uint32_t leaf) {
     const double* model = tree.model(leaf);
-    double value = model[0];
-    for (std::size_t c = 0; c < tree.inputs; ++c) value += model[1 + c] * x(points.first + point, c);
-    points.sum[point] += value;
+    points.sum[point] += linear_value(tree, model, x, points.first + point);
     points.low[point] += model[tree.inputs + 1];
     points.high[point] += model[tree.inputs + 2];
   });
 }
 
+// Sums run over the trees in their order, as in predict: the results are the same.
+void average(const Forest& forest, std::size_t output, const Matrix& x, Points& points,
+             std::span<double> means) {
+  const bool constant = forest.leaf() == LeafModel::constant;
+  points.sum.fill(0);
+  points.low.fill(0);
+  points.high.fill(0);
+  for (std::size_t t = 0; t < forest.trees(); ++t) {
+    if (constant) {
+      add_constants(forest.tree(output, t), points);
+    } else {
+      add_linear(forest.tree(output, t), x, points);
+    }
+  }
+  const auto count = static_cast<double>(forest.trees());
+  const OutputScale scale = forest.tree(output, 0).scale;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    means[i] = constant ? scale.offset + scale.scale * (points.sum[i] / count)
+                        : std::clamp(points.sum[i], points.low[i], points.high[i]) / count;
+  }
+}
+
+void trim(const Forest& forest, std::size_t output, const Matrix& x, Points& points,
+          std::span<double> means) {
+  const bool constant = forest.leaf() == LeafModel::constant;
+  const std::size_t count = forest.trees();
+  points.all.resize(points.size * count);
+  for (std::size_t t = 0; t < count; ++t) {
+    const ForestTree tree = forest.tree(output, t);
+    for_each_leaf(tree, points, [&](std::size_t point, std::uint32_t leaf) {
+      points.all[point * count + t] = constant ? static_cast<double>(tree.nodes[leaf].value)
+                                               : held_value(tree, tree.model(leaf), x, points.first + point);
+    });
+  }
+  const OutputScale scale = forest.tree(output, 0).scale;
+  for (std::size_t i = 0; i < points.size; ++i) {
+    const double mean = trimmed_mean(std::span(points.all).subspan(i * count, count));
+    means[i] = constant ? scale.offset + scale.scale * mean : mean;
+  }
+}
+
 }  // namespace
 
-// Sums run over the trees in their order, as in predict: the results are the same.
 void Forest::predict_batch(const Matrix& x, Matrix& y) const {
   assert(x.columns() == inputs_ && y.columns() == outputs() && x.rows() == y.rows());
-  Points points;
+  thread_local Points points;
   points.width = inputs_ + 1;
-  const std::size_t at_once = std::min(kMaxPoints, kNumbers / points.width / kAbreast * kAbreast);
-  const auto count = static_cast<double>(trees());
+  const bool trims = aggregation_ == Aggregation::trimmed_mean;
+  const std::size_t wanted =
+      trims ? std::min(kNumbers / points.width, kAllNumbers / trees()) : kNumbers / points.width;
+  const std::size_t at_once = std::clamp(wanted / kAbreast * kAbreast, kAbreast, kMaxPoints);
   for (points.first = 0; points.first < x.rows(); points.first += at_once) {
     points.size = std::min(at_once, x.rows() - points.first);
     take(x, points);
     for (std::size_t output = 0; output < outputs(); ++output) {
-      points.sum.fill(0);
-      points.low.fill(0);
-      points.high.fill(0);
-      for (std::size_t t = 0; t < trees(); ++t) {
-        if (leaf_ == LeafModel::constant) {
-          add_constants(tree(output, t), points);
-        } else {
-          add_linear(tree(output, t), x, points);
-        }
-      }
-      const OutputScale scale = scales_[output];
-      for (std::size_t i = 0; i < points.size; ++i) {
-        y(points.first + i, output) = leaf_ == LeafModel::constant
-                                          ? scale.offset + scale.scale * (points.sum[i] / count)
-                                          : std::clamp(points.sum[i], points.low[i], points.high[i]) / count;
+      const std::span<double> means = y.column(output).subspan(points.first, points.size);
+      if (trims) {
+        trim(*this, output, x, points, means);
+      } else {
+        average(*this, output, x, points, means);
       }
     }
   }

@@ -26,8 +26,9 @@ struct Bound {
 // bounds.
 class ExactMaximum {
  public:
-  Maximum over(std::span<const Tree> trees, const Box& box) {
+  Maximum over(std::span<const Tree> trees, Aggregation aggregation, const Box& box) {
     trees_ = trees;
+    trims_ = aggregation == Aggregation::trimmed_mean;
     box_ = &box;
     region_.reset(box);
     best_ = {};
@@ -41,6 +42,7 @@ class ExactMaximum {
       bound(tree, 0);
     }
     at_.assign(trees.size(), 0);
+    values_.resize(trees.size());
     search(0);
     return best_;
   }
@@ -93,13 +95,15 @@ class ExactMaximum {
       sum.model += b.model;
       sum.low += b.low;
       sum.high += b.high;
+      if (trims_) values_[t] = b.model;
       if (trees_[t].nodes[node].child == node) continue;
       if (const double s = b.high - b.least; s > spread) {
         spread = s;
         widest = t;
       }
     }
-    const double most = std::clamp(sum.model, sum.low, sum.high) / static_cast<double>(count);
+    const double most = trims_ ? trimmed_mean(values_)
+                               : std::clamp(sum.model, sum.low, sum.high) / static_cast<double>(count);
     if (found_ && !(most > best_.value)) return;
     if (widest == count) return cell(here);
     const TreeNode& split = trees_[widest].nodes[at_[here + widest]];
@@ -152,6 +156,7 @@ class ExactMaximum {
       const std::int32_t node = at_[here + t];
       if (trees_[t].leaf == LeafModel::constant) {
         value += trees_[t].nodes[node].value;
+        if (trims_) values_[t] = trees_[t].nodes[node].value;
         continue;
       }
       const double* model = trees_[t].model(node);
@@ -167,7 +172,7 @@ class ExactMaximum {
       value += slopes_[i] * at[i];
     }
     if (trees_[0].leaf == LeafModel::linear) value = std::clamp(value, low, high);
-    value /= static_cast<double>(count);
+    value = trims_ ? trimmed_mean(values_) : value / static_cast<double>(count);
     if (found_ && !(value > best_.value)) return;
     found_ = true;
     best_ = {at, value};
@@ -180,9 +185,25 @@ class ExactMaximum {
   std::vector<std::size_t> first_;  // where a tree's bounds begin
   std::vector<std::int32_t> at_;    // the branch at each level: a node of each tree
   std::vector<double> slopes_;
+  std::vector<double> values_;  // of each tree, to be trimmed
+  bool trims_ = false;
   Maximum best_;
   bool found_ = false;
 };
+
+// A tree is merged of others as their weighted mean, and where linear models are trimmed is no box.
+void check_trimmed(const Forest& forest, const Maximization& how) {
+  if (how.method == Maximization::Method::merge) {
+    throw std::invalid_argument(
+        "trees cannot be merged to their trimmed mean; choose the exact maximum, or the mean as aggregation");
+  }
+  if (forest.leaf() == LeafModel::linear) {
+    throw std::invalid_argument(
+        "the maximum of the trimmed mean of linear leaves is not known; choose constant leaves, or the mean "
+        "as "
+        "aggregation");
+  }
+}
 
 }  // namespace
 
@@ -193,6 +214,7 @@ Maximum maximize(const Forest& forest, std::span<const double> prefix, const Spa
         fmt::format("a function of {} inputs has no maximum over {} of them with {} given", forest.inputs(),
                     box.size(), prefix.size()));
   }
+  if (forest.aggregation() == Aggregation::trimmed_mean) check_trimmed(forest, how);
   thread_local Box bounds;
   thread_local std::vector<Tree> projected;
   bounds.low.resize(box.size());
@@ -206,7 +228,7 @@ Maximum maximize(const Forest& forest, std::span<const double> prefix, const Spa
   for (std::size_t i = 0; i < trees.size(); ++i) project(forest.tree(0, i), prefix, bounds, trees[i]);
   if (how.method == Maximization::Method::exact) {
     thread_local ExactMaximum exact;
-    return exact.over(trees, bounds);
+    return exact.over(trees, forest.aggregation(), bounds);
   }
   thread_local Tree merged;
   merge(trees, bounds, static_cast<std::size_t>(std::max(how.leaves, 1)), merged);

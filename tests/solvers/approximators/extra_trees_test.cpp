@@ -32,6 +32,17 @@ const Forest& forest(const MadeFunction& function) {
   return dynamic_cast<const ForestFunction&>(*function).forest();
 }
 
+// Aggregation changes what is made of the trees, not the trees.
+TEST(ExtraTrees, CanTrimItsMean) {
+  const Samples samples(500, 2);
+  Forest mean = forest(fit("<extra_trees/>", samples));
+  const Forest trimmed = forest(fit("<extra_trees aggregation=\"trimmed_mean\"/>", samples));
+  EXPECT_EQ(trimmed.aggregation(), Aggregation::trimmed_mean);
+  EXPECT_NE(mean, trimmed);
+  mean.aggregate_by(Aggregation::trimmed_mean);
+  EXPECT_EQ(mean, trimmed);
+}
+
 // What is left automatic, against the same said in full (N samples of D inputs).
 TEST(ExtraTrees, WorksOutItsParameters) {
   const auto expect_same = [](std::size_t n, std::size_t d, const std::string& automatic,

@@ -79,6 +79,61 @@ TEST(Forest, IsTheMeanOfItsTrees) {
   }
 }
 
+// Leaving out the lowest and the highest tenth, rounded up, by repeatedly removing the extremes.
+double trimmed_by_hand(std::vector<double> values) {
+  const auto tenth = static_cast<std::size_t>(std::ceil(static_cast<double>(values.size()) / 10));
+  for (std::size_t i = 0; i < tenth && values.size() > 2; ++i) {
+    values.erase(std::min_element(values.begin(), values.end()));
+    values.erase(std::max_element(values.begin(), values.end()));
+  }
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+TEST(Forest, IsTheTrimmedMeanOfItsTrees) {
+  for (std::uint64_t trial = 0; trial < 1000; ++trial) {
+    Stream stream = kDraws.stream("trimmed", trial);
+    const std::size_t inputs = 1 + stream.below(5), outputs = 1 + stream.below(3);
+    auto [trees, forest] =
+        random_forest(stream, inputs, outputs, trial % 2 == 0 ? LeafModel::constant : LeafModel::linear);
+    forest.aggregate_by(Aggregation::trimmed_mean);
+    const std::size_t each = trees.size() / outputs;
+    for (int i = 0; i < 10; ++i) {
+      std::vector<double> x;
+      for (std::size_t c = 0; c < inputs; ++c) x.push_back(eighth(stream, -2, 2));
+      const std::vector<double> y = predict(forest, x);
+      for (std::size_t o = 0; o < outputs; ++o) {
+        std::vector<double> values;  // each held in its range
+        for (std::size_t t = 0; t < each; ++t)
+          values.push_back(testing::predict(trees[o * each + t], x).value());
+        ASSERT_EQ(y[o], trimmed_by_hand(values)) << each << " trees, trial " << trial;
+      }
+    }
+    Archive archive;
+    forest.save(archive);
+    ASSERT_EQ(Forest::load(archive), forest);
+  }
+}
+
+TEST(TrimmedMean, LeavesOutTheTenthRoundedUpButNeverAll) {
+  const auto of_first = [](std::size_t size) {
+    std::vector<double> values(size);
+    for (std::size_t i = 0; i < size; ++i) values[i] = static_cast<double>((i * 7) % size);
+    values[0] = -1e9;  // the 0
+    return trimmed_mean(values);
+  };
+  EXPECT_EQ(of_first(1), -1e9);
+  EXPECT_EQ(of_first(2), (-1e9 + 1) / 2);
+  EXPECT_EQ(of_first(3), 1);
+  EXPECT_EQ(trimmed_on_each_side(10), 1u);
+  EXPECT_EQ(trimmed_on_each_side(11), 2u);
+  EXPECT_EQ(trimmed_on_each_side(25), 3u) << "as in the thesis's code";
+  EXPECT_EQ(of_first(25), 12);
+  std::vector<double> with_nan = {1, std::numeric_limits<double>::quiet_NaN(), 2, 3};
+  EXPECT_TRUE(std::isnan(trimmed_mean(with_nan)));
+}
+
 // A point next to a threshold, in double precision, is on the side that double precision says.
 TEST(Forest, ComparesAsInDoublePrecision) {
   Stream stream = kDraws.stream("sides");
@@ -103,8 +158,9 @@ TEST(Forest, PredictsABatchAsOneByOne) {
   for (const std::size_t inputs : {std::size_t{1}, std::size_t{3}, std::size_t{40}, kMaxTreeInputs}) {
     for (const LeafModel leaf : {LeafModel::constant, LeafModel::linear}) {
       Stream stream = kDraws.stream("batch", inputs);
-      const Forest forest = random_forest(stream, inputs, 2, leaf).forest;
+      Forest forest = random_forest(stream, inputs, 2, leaf).forest;
       for (const std::size_t rows : {0, 1, 7, 8, 9, 255, 300, 600}) {
+        forest.aggregate_by(rows % 2 == 0 ? Aggregation::mean : Aggregation::trimmed_mean);
         Matrix x(rows, inputs), y(rows, 2);
         for (double& value : x.values()) value = stream.uniform(-1.5, 1.5);
         forest.predict_batch(x, y);
@@ -217,7 +273,7 @@ void expect_refused(const Archive& good, const Damages& damages) {
 }
 
 Damages damages_of_shape() {
-  return {{"three numbers",
+  return {{"three or four numbers",
            [](Archive& a) {
              a.put("shape", Shape{2, 1});
            }},
@@ -233,8 +289,12 @@ Damages damages_of_shape() {
            [](Archive& a) {
              a.put("shape", Shape{2, 0, 1});
            }},
-          {"kind of leaf", [](Archive& a) {
+          {"kind of leaf",
+           [](Archive& a) {
              a.put("shape", Shape{2, 1, 2});
+           }},
+          {"unknown aggregation", [](Archive& a) {
+             a.put("shape", Shape{2, 1, 1, 2});
            }}};
 }
 

@@ -35,7 +35,13 @@ Case random_case(std::uint64_t trial) {
 }
 
 /// The mean of the trees' leaves at `in` (which chooses the leaves), taken at x.
-double mean_at(const std::vector<Tree>& trees, const std::vector<double>& in, const std::vector<double>& x) {
+double mean_at(const std::vector<Tree>& trees, Aggregation aggregation, const std::vector<double>& in,
+               const std::vector<double>& x) {
+  if (aggregation == Aggregation::trimmed_mean) {
+    std::vector<double> values;
+    for (const Tree& tree : trees) values.push_back(value_of_leaf(tree, leaf_at(tree, in), x).value());
+    return trimmed_mean(values);
+  }
   Prediction sum;
   for (const Tree& tree : trees) {
     const Prediction p = value_of_leaf(tree, leaf_at(tree, in), x);
@@ -44,7 +50,7 @@ double mean_at(const std::vector<Tree>& trees, const std::vector<double>& in, co
   return sum.value() / static_cast<double>(trees.size());
 }
 
-double largest(const Case& test) {
+double largest(const Case& test, Aggregation aggregation = Aggregation::mean) {
   std::vector<Tree> shifted = test.trees;  // cells of the action axes only
   for (Tree& tree : shifted) {
     for (TreeNode& node : tree.nodes) node.feature -= static_cast<std::int32_t>(test.prefix.size());
@@ -60,7 +66,7 @@ double largest(const Case& test) {
       for (std::size_t i = 0; i < test.axes.size(); ++i) {
         if ((corner >> i & 1) != 0) x[test.prefix.size() + i] = cell.low[i];
       }
-      best = std::max(best, mean_at(test.trees, in, x));
+      best = std::max(best, mean_at(test.trees, aggregation, in, x));
     }
   }
   return best;
@@ -85,6 +91,30 @@ TEST(Maximize, ExactIsTheLargestOverAllCellsAndIsTakenWhereItSays) {
       ASSERT_TRUE(best.at[i] >= test.axes[i].low && best.at[i] <= test.axes[i].high) << "trial " << trial;
     }
     ASSERT_NEAR(predicted(forest, test, best), best.value, 1e-12) << "trial " << trial;
+  }
+}
+
+TEST(Maximize, ExactIsTheLargestTrimmedMeanOfConstants) {
+  for (std::uint64_t trial = 0; trial < 6000; ++trial) {
+    const Case test = random_case(trial);
+    if (test.trees[0].leaf == LeafModel::linear) continue;
+    Forest forest = forest_of(test.trees);
+    forest.aggregate_by(Aggregation::trimmed_mean);
+    const Maximum best = maximize(forest, test.prefix, test.axes, kExact);
+    ASSERT_NEAR(best.value, largest(test, Aggregation::trimmed_mean), 1e-12) << "trial " << trial;
+    ASSERT_NEAR(predicted(forest, test, best), best.value, 1e-12) << "trial " << trial;
+  }
+}
+
+TEST(Maximize, RefusesTrimmedMeansThatItCannotExpress) {
+  for (std::uint64_t trial = 0; trial < 6; ++trial) {
+    const Case test = random_case(trial);
+    Forest forest = forest_of(test.trees);
+    forest.aggregate_by(Aggregation::trimmed_mean);
+    EXPECT_THROW(maximize(forest, test.prefix, test.axes, {Maximization::Method::merge, 50}),
+                 std::invalid_argument);
+    if (forest.leaf() == LeafModel::constant) continue;
+    EXPECT_THROW(maximize(forest, test.prefix, test.axes, kExact), std::invalid_argument);
   }
 }
 
