@@ -10,9 +10,16 @@ case "$preset" in
   *) folder="build-$preset" ;;
 esac
 
+# A compiler cache, where there is one, serves the builds of every clone; it does not go with precompiled headers.
+cache=""
+if command -v ccache >/dev/null; then
+  export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
+  cache="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"
+fi
+
 quiet="--quiet"
 [ -t 1 ] && quiet=""
-cmake --preset "$preset" --log-level=WARNING >/dev/null
+cmake --preset "$preset" --log-level=WARNING $cache >/dev/null
 if [ "$#" -gt 0 ]; then
   cmake --build "$folder" -j "$jobs" --target "$@" -- $quiet
 else

@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "tests/cli/runs.h"
+#include "tests/support/places.h"
 
 namespace coppice {
 namespace {
@@ -24,7 +25,7 @@ void PrintTo(const Shipped& shipped, std::ostream* out) {
 class Bytes : public RunsInAFolder, public testing::WithParamInterface<Shipped> {
  protected:
   static std::string command() {
-    return COPPICE_SOURCE_DIR "/configs/" + GetParam().file + " " + GetParam().arguments;
+    return (source_folder() / "configs" / GetParam().file).string() + " " + GetParam().arguments;
   }
   void calm(const std::string& options) const {
     const Ended ended = run(command() + " --progress none " + options);

@@ -5,13 +5,14 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/process.h"
+#include "tests/support/places.h"
 
 namespace coppice {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kSource = COPPICE_SOURCE_DIR;
+const fs::path kSource = source_folder();
 
 std::vector<fs::path> xml_files(const fs::path& folder) {
   std::vector<fs::path> found;

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "tests/cli/process.h"
+#include "tests/support/places.h"
 
 // Every command that the pages for users show is executed: lines "$ command" of ```console blocks, one page
 // in one folder, and the examples of the commands' help. What a page shows as output must come out; a line
@@ -14,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kSource = COPPICE_SOURCE_DIR;
+const fs::path kSource = source_folder();
 
 struct Step {
   std::string command;
@@ -44,12 +45,12 @@ std::vector<Step> steps_of(const fs::path& page) {
 /// A folder as users have it: the shipped configs, and a home of their own.
 struct Home {
   TemporaryFolder folder;
-  std::string program = COPPICE_RUNNER;
+  std::string program = runner_program();
   explicit Home(const fs::path& page = {}) {
     fs::copy(kSource / "configs", folder / "configs", fs::copy_options::recursive);
     if (page.filename() == "your-problem.md") {
-      program = COPPICE_CONTRIBUTING_RUNNER;
-      fs::copy(COPPICE_YOUR_PROBLEM, folder.path(), fs::copy_options::recursive);
+      program = contributing_program();
+      fs::copy(your_problem_folder(), folder.path(), fs::copy_options::recursive);
     }
     fs::create_directories(folder / ".zfunc");
     fs::create_directories(folder / ".config/fish/completions");

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/places.h"
 #include "tests/support/temporary_folder.h"
 
 namespace coppice {
@@ -19,12 +20,12 @@ struct Ended {
 };
 
 /// Runs a bash script in which `runner` is the program under test and $RUNNER its path.
-inline Ended shell(const std::string& command, const std::filesystem::path& folder = COPPICE_SOURCE_DIR,
+inline Ended shell(const std::string& command, const std::filesystem::path& folder = source_folder(),
                    const std::string& input = {}) {
   const TemporaryFolder scratch;
   const auto quoted = [](const std::filesystem::path& path) { return "'" + path.string() + "'"; };
   scratch.write("in", input);
-  scratch.write("script", "RUNNER='" COPPICE_RUNNER "'\nrunner() { \"$RUNNER\" \"$@\"; }\ncd " +
+  scratch.write("script", "RUNNER='" + runner_program() + "'\nrunner() { \"$RUNNER\" \"$@\"; }\ncd " +
                               quoted(folder) + " || exit 99\n" + command + "\n");
   const std::string line = "bash " + quoted(scratch / "script") + " < " + quoted(scratch / "in") + " > " +
                            quoted(scratch / "out") + " 2> " + quoted(scratch / "err");
@@ -34,7 +35,7 @@ inline Ended shell(const std::string& command, const std::filesystem::path& fold
 }
 
 /// Runs the program itself.
-inline Ended runner(const std::string& arguments, const std::filesystem::path& folder = COPPICE_SOURCE_DIR,
+inline Ended runner(const std::string& arguments, const std::filesystem::path& folder = source_folder(),
                     const std::string& input = {}) {
   return shell("runner " + arguments, folder, input);
 }

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "tests/cli/process.h"
+#include "tests/support/places.h"
 
 namespace coppice {
 namespace {
@@ -21,7 +22,8 @@ std::string shown_on_terminal(const std::vector<std::string>& arguments, const s
   if (child == 0) {
     ::setenv("TERM", "xterm", 1);
     ::unsetenv("NO_COLOR");
-    std::vector<char*> argv = {const_cast<char*>(COPPICE_RUNNER)};
+    const std::string program = runner_program();
+    std::vector<char*> argv = {const_cast<char*>(program.c_str())};
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
     if (::chdir(folder.c_str()) != 0) ::_exit(99);

@@ -13,6 +13,7 @@
 #include "engine/graph/artifacts.h"
 #include "engine/graph/plan.h"
 #include "engine/graph/run.h"
+#include "tests/support/places.h"
 #include "tests/support/temporary_folder.h"
 
 namespace coppice {
@@ -139,8 +140,7 @@ struct Text {
 
 std::vector<Text> configs_below(const std::string& folder) {
   std::vector<Text> found;
-  for (const fs::directory_entry& entry :
-       fs::recursive_directory_iterator(fs::path(COPPICE_SOURCE_DIR) / folder)) {
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(source_folder() / folder)) {
     if (entry.path().extension() == ".xml")
       found.push_back({entry.path(), TemporaryFolder::read(entry.path())});
   }

@@ -12,6 +12,7 @@
 #include "engine/graph/key.h"
 #include "tests/support/example.h"
 #include "tests/support/make.h"
+#include "tests/support/places.h"
 
 namespace coppice {
 
@@ -24,7 +25,7 @@ constexpr double kGoldenTolerance = 1e-9;  // relative; across compilers and mac
 
 inline std::filesystem::path golden_folder(std::string interface) {
   const char* given = std::getenv("COPPICE_GOLDEN_DIR");
-  const std::filesystem::path own = std::filesystem::path(COPPICE_SOURCE_DIR) / "tests/golden";
+  const std::filesystem::path own = source_folder() / "tests/golden";
   if (interface.back() == 'y') interface.replace(interface.size() - 1, 1, "ie");
   return (given != nullptr ? std::filesystem::path(given) : own) / (interface + "s");
 }
