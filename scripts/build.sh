@@ -10,11 +10,11 @@ case "$preset" in
   *) folder="build-$preset" ;;
 esac
 
-# A compiler cache, where there is one, serves the builds of every clone; it does not go with precompiled headers.
+# A compiler cache, where there is one, serves the builds of every clone.
 cache=""
 if command -v ccache >/dev/null; then
   export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
-  cache="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"
+  cache="-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
 fi
 
 quiet="--quiet"
