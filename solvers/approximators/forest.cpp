@@ -13,18 +13,35 @@
 namespace coppice {
 namespace {
 
-constexpr std::size_t kTreesAbreast = 8;
+// As many descents as registers hold.
+constexpr std::size_t kTreesAbreast = 9;
+using Leaves = std::array<std::uint64_t, kTreesAbreast>;
 
-// Calls visit(leaf) for the leaf of x in each of `count` trees, in their order.
+template <std::size_t kSize>
+void find_leaves(const ForestNode* nodes, const std::uint32_t* roots, const float* x, Leaves& leaves) {
+  std::array<std::uint64_t, kSize> at;
+  std::copy(roots, roots + kSize, at.begin());
+  descend(nodes, at, [x](std::size_t, std::uint32_t feature) { return x[feature]; });
+  std::copy(at.begin(), at.end(), leaves.begin());
+}
+
+constexpr std::array kFindLeaves = {find_leaves<1>, find_leaves<2>, find_leaves<3>,
+                                    find_leaves<4>, find_leaves<5>, find_leaves<6>,
+                                    find_leaves<7>, find_leaves<8>, find_leaves<9>};
+static_assert(kFindLeaves.size() == kTreesAbreast);
+
+// Calls visit(leaf) for the leaf of x, which a NaN follows, in each of `count` trees, in their order.
 template <class Visit>
-void for_each_leaf(const ForestNode* nodes, const std::uint32_t* roots, std::size_t count, const float* x,
-                   Visit visit) {
-  for (std::size_t first = 0; first < count; first += kTreesAbreast) {
-    const std::size_t width = std::min(kTreesAbreast, count - first);
-    std::array<std::uint32_t, kTreesAbreast> at;
-    for (std::size_t i = 0; i < kTreesAbreast; ++i) at[i] = roots[first + (i < width ? i : 0)];
-    descend(nodes, at, [x](std::size_t) { return x; });
-    for (std::size_t i = 0; i < width; ++i) visit(at[i]);
+void for_each_leaf(const ForestNode* nodes, std::span<const std::uint32_t> roots, std::span<const float> x,
+                   const Visit& visit) {
+  if (roots.size() == 1) return visit(descend_alone(nodes, roots[0], x));
+  Leaves leaves;
+  std::size_t groups = (roots.size() + kTreesAbreast - 1) / kTreesAbreast;
+  for (std::size_t first = 0; groups > 0; --groups) {  // of about equal size
+    const std::size_t size = (roots.size() - first + groups - 1) / groups;
+    kFindLeaves[size - 1](nodes, roots.data() + first, x.data(), leaves);
+    for (std::size_t i = 0; i < size; ++i) visit(static_cast<std::uint32_t>(leaves[i]));
+    first += size;
   }
 }
 
@@ -109,37 +126,40 @@ void Forest::predict(std::span<const double> x, std::span<double> y) const {
   std::array<float, kMaxTreeInputs + 1> rounded;
   std::transform(x.begin(), x.end(), rounded.begin(), rounded_up);
   rounded[inputs_] = std::numeric_limits<float>::quiet_NaN();
+  const std::span<const float> inputs(rounded.data(), inputs_);
   for (std::size_t output = 0; output < outputs(); ++output) {
-    y[output] = aggregation_ == Aggregation::mean ? mean(output, x.data(), rounded.data())
-                                                  : trimmed(output, x.data(), rounded.data());
+    y[output] = aggregation_ == Aggregation::mean ? mean(output, x.data(), inputs)
+                                                  : trimmed(output, x.data(), inputs);
   }
 }
 
-double Forest::mean(std::size_t output, const double* x, const float* rounded) const {
-  const std::size_t count = trees();
-  const std::uint32_t* roots = roots_.data() + output * count;
+std::span<const std::uint32_t> Forest::roots_of(std::size_t output) const {
+  return std::span(roots_).subspan(output * trees(), trees());
+}
+
+double Forest::mean(std::size_t output, const double* x, std::span<const float> rounded) const {
+  const auto count = static_cast<double>(trees());
   double sum = 0;
   if (leaf_ == LeafModel::constant) {
-    for_each_leaf(nodes_.data(), roots, count, rounded,
+    for_each_leaf(nodes_.data(), roots_of(output), rounded,
                   [&](std::uint32_t leaf) { sum += static_cast<double>(nodes_[leaf].value); });
-    return scales_[output].offset + scales_[output].scale * (sum / static_cast<double>(count));
+    return scales_[output].offset + scales_[output].scale * (sum / count);
   }
   double low = 0;
   double high = 0;
-  for_each_leaf(nodes_.data(), roots, count, rounded, [&](std::uint32_t leaf) {
+  for_each_leaf(nodes_.data(), roots_of(output), rounded, [&](std::uint32_t leaf) {
     sum += linear_value(leaf, x);
     const double* range = models_.data() + nodes_[leaf].row() * model_width(inputs_) + inputs_ + 1;
     low += range[0];
     high += range[1];
   });
-  return std::clamp(sum, low, high) / static_cast<double>(count);
+  return std::clamp(sum, low, high) / count;
 }
 
-double Forest::trimmed(std::size_t output, const double* x, const float* rounded) const {
+double Forest::trimmed(std::size_t output, const double* x, std::span<const float> rounded) const {
   thread_local std::vector<double> values;
   values.clear();
-  const std::size_t count = trees();
-  for_each_leaf(nodes_.data(), roots_.data() + output * count, count, rounded, [&](std::uint32_t leaf) {
+  for_each_leaf(nodes_.data(), roots_of(output), rounded, [&](std::uint32_t leaf) {
     if (leaf_ == LeafModel::constant) {
       values.push_back(static_cast<double>(nodes_[leaf].value));
     } else {

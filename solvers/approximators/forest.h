@@ -141,8 +141,9 @@ class Forest {
   static Forest load_first_format(const Archive& archive, std::size_t inputs, std::size_t outputs,
                                   LeafModel leaf);
   double linear_value(std::uint32_t leaf, const double* x) const;
-  double mean(std::size_t output, const double* x, const float* rounded) const;
-  double trimmed(std::size_t output, const double* x, const float* rounded) const;
+  std::span<const std::uint32_t> roots_of(std::size_t output) const;
+  double mean(std::size_t output, const double* x, std::span<const float> rounded) const;
+  double trimmed(std::size_t output, const double* x, std::span<const float> rounded) const;
   void check() const;
 
   std::size_t inputs_ = 0;

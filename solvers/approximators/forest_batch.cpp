@@ -18,39 +18,40 @@ static_assert(kAbreast * (kMaxTreeInputs + 1) <= kNumbers);
 struct Points {
   std::size_t first;
   std::size_t size;
-  std::size_t width;                    // of a row below
-  std::array<float, kNumbers> rounded;  // rows, with a NaN in the end
-  std::array<double, kMaxPoints> sum;   // over trees
-  std::array<double, kMaxPoints> low;   // for linear leaves
+  std::size_t width;                      // inputs and one more
+  std::array<float, kNumbers> rounded{};  // see place(); the input after the last is NaN
+  std::array<double, kMaxPoints> sum;     // over trees
+  std::array<double, kMaxPoints> low;     // for linear leaves
   std::array<double, kMaxPoints> high;
   std::vector<double> all;  // for trimmed means: each point's predictions of all trees
 };
 
+// Where input c of a point is: kAbreast points' after each other, then the next input.
+std::size_t place(const Points& points, std::size_t point, std::size_t c) {
+  return point / kAbreast * kAbreast * points.width + c * kAbreast + point % kAbreast;
+}
+
 void take(const Matrix& x, Points& points) {
   for (std::size_t c = 0; c + 1 < points.width; ++c) {
     const double* column = x.column(c).data() + points.first;
-    for (std::size_t i = 0; i < points.size; ++i)
-      points.rounded[i * points.width + c] = rounded_up(column[i]);
+    for (std::size_t i = 0; i < points.size; ++i) points.rounded[place(points, i, c)] = rounded_up(column[i]);
   }
-  for (std::size_t i = 0; i < points.size; ++i) {
-    points.rounded[(i + 1) * points.width - 1] = std::numeric_limits<float>::quiet_NaN();
+  const std::size_t whole = (points.size + kAbreast - 1) / kAbreast * kAbreast;
+  for (std::size_t i = 0; i < whole; ++i) {
+    points.rounded[place(points, i, points.width - 1)] = std::numeric_limits<float>::quiet_NaN();
   }
 }
 
-// Calls visit(point, leaf) for all points in a tree.
+// Calls visit(point, leaf) for all points in a tree. What is behind the last point descends with it.
 template <class Visit>
 void for_each_leaf(const ForestTree& tree, const Points& points, const Visit& visit) {
   for (std::size_t i = 0; i < points.size; i += kAbreast) {
-    const std::size_t size = std::min(kAbreast, points.size - i);
-    std::array<std::uint32_t, kAbreast> at;
+    std::array<std::uint64_t, kAbreast> at;
     at.fill(tree.root);
-    const float* row = points.rounded.data() + i * points.width;
-    if (size == kAbreast) {
-      descend(tree.nodes, at, [&](std::size_t p) { return row + p * points.width; });
-    } else {
-      descend(tree.nodes, at, [&](std::size_t p) { return row + (p < size ? p : 0) * points.width; });
-    }
-    for (std::size_t p = 0; p < size; ++p) visit(i + p, at[p]);
+    const float* x = points.rounded.data() + i * points.width;
+    descend(tree.nodes, at, [x](std::size_t p, std::uint32_t feature) { return x[feature * kAbreast + p]; });
+    const std::size_t size = std::min(kAbreast, points.size - i);
+    for (std::size_t p = 0; p < size; ++p) visit(i + p, static_cast<std::uint32_t>(at[p]));
   }
 }
 

@@ -1,32 +1,71 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <span>
 
 #include "solvers/approximators/forest.h"
 
 namespace coppice {
 
-/// One step of a descent; in a leaf it stays.
-inline std::uint32_t step_down(const ForestNode* nodes, std::uint32_t at, const float* x) {
-  const ForestNode node = nodes[at];
-  return at + node.ahead() + (x[node.feature()] > node.value ? 1 : 0);
-}
-
-/// Leads kSize descents to their leaves, number i with the inputs point(i). Their loads overlap, where one
-/// descent after the other would wait for each.
-template <std::size_t kSize, class Point>
-void descend(const ForestNode* nodes, std::array<std::uint32_t, kSize>& at, const Point& point) {
+/// Leads kSize descents to their leaves, number i by its inputs input(i, feature). Their loads overlap, where
+/// one descent after the other would wait for each; in a leaf a descent stays.
+template <std::size_t kSize, class Input>
+inline void descend(const ForestNode* nodes, std::array<std::uint64_t, kSize>& places, const Input& input) {
+  std::array<std::uint64_t, kSize> at = places;  // in registers
   std::uint32_t moved;
   do {
     moved = 0;
+#pragma GCC unroll 16
     for (std::size_t i = 0; i < kSize; ++i) {
-      const std::uint32_t next = step_down(nodes, at[i], point(i));
-      moved |= next ^ at[i];
-      at[i] = next;
+      const ForestNode& node = nodes[at[i]];
+      const std::uint32_t step = node.ahead() + (input(i, node.feature()) > node.value ? 1 : 0);
+      at[i] += step;
+      moved |= step;
     }
   } while (moved != 0);
+  places = at;
 }
+
+/// Whole numbers in the order of numbers in single precision.
+inline std::uint32_t ordered(std::uint32_t bits) {
+  const std::uint32_t sign = 0U - (bits >> 31);  // all bits, or none
+  return bits ^ (sign | 0x80000000U);
+}
+
+/// The leaf of rounded inputs in a single tree. One descent is as slow as what each of its steps waits for:
+/// so both children are loaded while it is seen which one it is, whole numbers are compared, which is faster,
+/// and the choice is no branch, which would be guessed wrongly half the time.
+inline std::uint32_t descend_alone(const ForestNode* nodes, std::uint32_t root, std::span<const float> x) {
+  std::array<std::uint32_t, kMaxTreeInputs> keys;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    // -0 and 0 are equal, and NaN is not above anything.
+    keys[i] = x[i] == 0      ? ordered(0x80000000U)
+              : x[i] == x[i] ? ordered(std::bit_cast<std::uint32_t>(x[i]))
+                             : 0U;
+  }
+  const auto load = [](const ForestNode* node) {
+    std::uint64_t bits;  // the value, then the link
+    std::memcpy(&bits, node, sizeof bits);
+    return bits;
+  };
+  const ForestNode* at = nodes + root;
+  std::uint64_t node = load(at);
+  for (;;) {
+    const std::uint64_t ahead = node >> 32 & ForestNode::kMaxAhead;
+    if (ahead == 0) return static_cast<std::uint32_t>(at - nodes);
+    const ForestNode* low_child = at + ahead;
+    const std::uint64_t low = load(low_child);
+    const std::uint64_t high = load(low_child + 1);
+    const bool is_high = ordered(static_cast<std::uint32_t>(node)) < keys[node >> 56];
+    const std::uint64_t mask = 0U - static_cast<std::uint64_t>(is_high);
+    node = low ^ ((low ^ high) & mask);
+    at = low_child + (is_high ? 1 : 0);
+  }
+}
+static_assert(std::endian::native == std::endian::little, "a node's value is in its first four bytes");
 
 }  // namespace coppice
