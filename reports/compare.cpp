@@ -70,7 +70,7 @@ struct CompareNode : Node {
   static Parameters<CompareNode> parameters() {
     using This = CompareNode;
     return node_parameters<This>()
-        .references("of", &This::of, "evaluation", "Evaluations to compare.")
+        .references("of", &This::of, "timing", "Evaluations to compare; or fits, for their metrics.")
         .add("by", &This::by, "",
              "What tells apart what is compared: columns of sweeps, problem, policy, node (the evaluation's "
              "id).")
@@ -97,6 +97,7 @@ struct CompareNode : Node {
 
   Arrangement arranged(const NodeContext& context) const {
     Arrangement what;
+    require_metric(context.inputs("of"), metric);
     what.cells = arrange(entries_of(context.inputs("of")), {within, by, "by and within"});
     std::vector<std::string> names;
     const auto group = [&](std::size_t i) {

@@ -23,7 +23,10 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 
 /// A figure as data: a tidy table, and a Vega-Lite specification that draws it.
 struct FigureNode : Node {
-  References of;
+  /// What a figure is drawn of.
+  enum class Source { learning, datasets, metrics };
+
+  References of, observations;
   FigureKind kind = FigureKind::line;
   std::string x, y = "cost";
   std::vector<std::string> by;
@@ -38,46 +41,60 @@ struct FigureNode : Node {
   void check(const NodeContext& context) const override {
     const std::vector<InputNode>& nodes = context.inputs("of");
     if (kind != FigureKind::line && !x.empty()) throw std::invalid_argument("only a line has an x");
-    if (is_learning(nodes)) {
+    const Source source = source_of(nodes);
+    if (source != Source::datasets && !observations.empty()) {
+      throw std::invalid_argument("observations lie beside lines of datasets only");
+    }
+    if (source == Source::learning) {
       check_learning(nodes);
+    } else if (source == Source::datasets) {
+      check_datasets(nodes);
+      check_datasets(context.inputs("observations"));
     } else {
-      metric();
+      require_metric(nodes, metric());
       if (kind == FigureKind::line && (x.empty() || is_time(x))) {
         throw std::invalid_argument(
             "give x, a column of a sweep; only learning nodes have a course over iterations or time");
       }
     }
-    groups(nodes);
+    groups(drawn(context));
   }
 
   void run(NodeContext& context) const override {
-    const std::vector<InputNode>& nodes = context.inputs("of");
+    const std::vector<InputNode> nodes = drawn(context);
     const std::vector<TableCell> arranged = groups(nodes);
-    const bool swept = kind == FigureKind::line && !is_learning(nodes);
+    const bool swept = kind == FigureKind::line && source_of(nodes) == Source::metrics;
     std::vector<std::string> names = keys(nodes);
     Table key_table;
     add_key_columns(key_table, {names, {}}, arranged);
-    Table table = data({nodes, arranged, key_table});
+    Table table = data({nodes, arranged, key_table, context.inputs("of").size()});
     rename_taken_keys(table, names.size());
     write_table(context.folder() / kTableFile, table);
     for (std::string& name : names) name = key_column(table, name);
     const std::string abscissa = swept ? names.back() : learning_x();
     names.resize(by.size());
-    write_file(context.folder() / "table.vl.json", vega_lite(table, {kind, abscissa, y, names, swept}));
+    write_file(context.folder() / "table.vl.json",
+               vega_lite(table, {kind, abscissa, y, names, swept, !observations.empty()}));
   }
 
   static Parameters<FigureNode> parameters() {
     using This = FigureNode;
     return node_parameters<This>()
-        .references("of", &This::of, "timing", "Learning nodes, or evaluations.")
+        .references("of", &This::of, "timing",
+                    "Learning nodes, datasets, or evaluations or fits for their metrics.")
+        .references("observations", &This::observations, "dataset",
+                    "Datasets whose rows are drawn as points beside lines of datasets.", false)
         .choice("kind", &This::kind, {"line", "histogram", "interval", "profile"},
                 "Mean and band over x, distribution, means with intervals, or share of runs better than a "
                 "threshold.")
         .add("x", &This::x, "",
-             "Of a line: for evaluations a column of a sweep; for learning nodes a column of their progress, "
+             "Of a line: for metrics a column of a sweep; of datasets a column; for learning nodes a column "
+             "of "
+             "their progress, "
              "cpu_s or wall_s (such a figure differs from run to run); empty: iteration.")
         .add("y", &This::y, "",
-             "For evaluations a metric as tables have it; for learning nodes a column of their progress.")
+             "A metric as tables have it; for learning nodes a column of their progress, for datasets a "
+             "column.")
         .add("by", &This::by, "", "What tells lines apart: columns of sweeps, problem, policy, node.")
         .automatic("bins", &This::bins, "",
                    "Bins of a histogram; auto: the Freedman-Diaconis rule, whole widths for whole numbers.",
@@ -85,25 +102,36 @@ struct FigureNode : Node {
   }
 
  private:
-  static bool is_learning(const std::vector<InputNode>& nodes) {
-    const auto learns = [](const InputNode& node) { return coppice::makes(node, "progress"); };
-    const auto count = std::count_if(nodes.begin(), nodes.end(), learns);
+  static Source source_of(const InputNode& node) {
+    if (coppice::makes(node, "progress")) return Source::learning;
+    if (coppice::makes(node, "dataset")) return Source::datasets;
+    if (coppice::makes(node, "evaluation") || coppice::makes(node, "scores")) return Source::metrics;
+    throw std::invalid_argument(
+        fmt::format("'{}' (<{}>) neither learns nor evaluates, and is no dataset", node.id, node.kind));
+  }
+  static Source source_of(const std::vector<InputNode>& nodes) {
+    const Source source = source_of(nodes.front());
     for (const InputNode& node : nodes) {
-      if (learns(node) || coppice::makes(node, "evaluation")) continue;
+      if (source_of(node) == source) continue;
       throw std::invalid_argument(
-          fmt::format("'{}' (<{}>) neither learns nor evaluates", node.id, node.kind));
+          "of: learning nodes, datasets and what has metrics do not go into one figure");
     }
-    if (count != 0 && count != static_cast<std::ptrdiff_t>(nodes.size())) {
-      throw std::invalid_argument("of: learning nodes and evaluations do not go into one figure");
-    }
-    return count != 0;
+    return source;
+  }
+
+  std::vector<InputNode> drawn(const NodeContext& context) const {
+    std::vector<InputNode> nodes = context.inputs("of");
+    if (observations.empty()) return nodes;
+    const std::vector<InputNode>& more = context.inputs("observations");
+    nodes.insert(nodes.end(), more.begin(), more.end());
+    return nodes;
   }
 
   /// That the progress of each node has x and y, as far as its columns are known.
   void check_learning(const std::vector<InputNode>& nodes) const {
     if (kind != FigureKind::line) {
       throw std::invalid_argument(
-          "only evaluations have histograms, intervals and profiles; evaluate what was learned");
+          "only metrics have histograms, intervals and profiles; evaluate what was learned");
     }
     if (contains(estimate_column_names(), x)) {
       throw std::invalid_argument(fmt::format("x: a figure has a column '{}' of its own", x));
@@ -121,6 +149,22 @@ struct FigureNode : Node {
     }
   }
 
+  /// That each dataset has x and y, as far as its columns are known.
+  void check_datasets(const std::vector<InputNode>& nodes) const {
+    if (kind != FigureKind::line) throw std::invalid_argument("of datasets there are lines only");
+    if (x.empty() || x == y) throw std::invalid_argument("give x and y, two columns of the datasets");
+    if (is_time(x) || contains(estimate_column_names(), x)) {
+      throw std::invalid_argument(fmt::format("x: a figure has a column '{}' of its own", x));
+    }
+    for (const InputNode& node : nodes) {
+      for (const std::string& column : {x, y}) {
+        if (node.columns.empty() || contains(node.columns, column)) continue;
+        throw std::invalid_argument(fmt::format("the dataset '{}' has no column '{}'; {}", node.id, column,
+                                                suggestion(column, node.columns)));
+      }
+    }
+  }
+
   std::string learning_x() const { return x.empty() ? "iteration" : x; }
 
   Metric metric() const {
@@ -132,10 +176,10 @@ struct FigureNode : Node {
     return static_cast<Metric>(found - names.begin());
   }
 
-  /// What tells rows of the figure's table apart: `by`, and the x of evaluations.
+  /// What tells rows of the figure's table apart: `by`, and the x of metrics.
   std::vector<std::string> keys(const std::vector<InputNode>& nodes) const {
     std::vector<std::string> names = by;
-    if (kind == FigureKind::line && !is_learning(nodes)) names.push_back(x);
+    if (kind == FigureKind::line && source_of(nodes) == Source::metrics) names.push_back(x);
     return names;
   }
   std::vector<TableCell> groups(const std::vector<InputNode>& nodes) const {
@@ -143,7 +187,7 @@ struct FigureNode : Node {
   }
 
   Table data(const FigureInputs& inputs) const {
-    if (is_learning(inputs.nodes)) return learning_table(inputs, learning_x(), y);
+    if (source_of(inputs.nodes) != Source::metrics) return curve_table(inputs, learning_x(), y);
     switch (kind) {
       case FigureKind::histogram:
         return histogram_table(inputs, metric(), static_cast<std::size_t>(bins.value_or(0)));
@@ -159,7 +203,7 @@ struct FigureNode : Node {
 
 const Component<Node, FigureNode> kComponent(
     "figure", "Make a figure: tidy data, and a Vega-Lite specification that draws it.",
-    "Agarwal et al. 2021 (performance profiles)", 3);
+    "Agarwal et al. 2021 (performance profiles)", 4);
 
 }  // namespace
 }  // namespace coppice

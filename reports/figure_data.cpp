@@ -21,6 +21,26 @@ std::size_t column_of(const Table& table, const InputNode& node, const std::stri
       fmt::format("the progress of '{}' has no column '{}'; {}", node.id, name, suggestion(name, known)));
 }
 
+/// Points in the order of x.
+Curve ordered(const Curve& points, const InputNode& node, const std::string& x) {
+  std::vector<std::pair<double, double>> pairs;
+  for (std::size_t i = 0; i < points.x.size(); ++i) {
+    if (std::isfinite(points.x[i]) && std::isfinite(points.y[i]))
+      pairs.emplace_back(points.x[i], points.y[i]);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  Curve curve;
+  for (const auto& [at, value] : pairs) {
+    if (!curve.x.empty() && at == curve.x.back()) {
+      throw std::invalid_argument(
+          fmt::format("the dataset '{}' has two rows with {} = {}: no line", node.id, x, at));
+    }
+    curve.x.push_back(at);
+    curve.y.push_back(value);
+  }
+  return curve;
+}
+
 /// The last y so far; NaN before the curve begins.
 double value_at(const Curve& curve, double x) {
   const auto after = std::upper_bound(curve.x.begin(), curve.x.end(), x);
@@ -34,7 +54,21 @@ bool is_time(const std::string& x) {
   return x == "cpu_s" || x == "wall_s";
 }
 
+Curve read_points(const InputNode& node, const std::string& x, const std::string& y) {
+  const Table table = read_table(node.folder / kDatasetFile, {x, y});
+  const std::size_t x_column = table.column(x), y_column = table.column(y);
+  Curve points;
+  for (const std::vector<Cell>& row : table.rows) {
+    points.x.push_back(number(row[x_column]));
+    points.y.push_back(number(row[y_column]));
+  }
+  return points;
+}
+
 Curve read_curve(const InputNode& node, const std::string& x, const std::string& y) {
+  if (std::find(node.makes.begin(), node.makes.end(), "dataset") != node.makes.end()) {
+    return ordered(read_points(node, x, y), node, x);
+  }
   const Table progress = read_table(node.folder / kProgressFile);
   const std::size_t x_column = column_of(progress, node, is_time(x) ? "iteration" : x);
   const std::size_t y_column = column_of(progress, node, y);

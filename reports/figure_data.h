@@ -9,13 +9,17 @@
 
 namespace coppice {
 
-/// One learning run as a curve: increasing x, finite y.
+/// One learning run, or dataset, as a curve: increasing x, finite y.
 struct Curve {
   std::vector<double> x, y;
 };
 
+/// The rows of a dataset.
+Curve read_points(const InputNode& node, const std::string& x, const std::string& y);
+
 /// A learning node's measure by another of its columns, or by "cpu_s" or "wall_s": the node's time, shared
-/// out among its units of work as if each had taken equally long. Throws std::invalid_argument for a column
+/// out among its units of work as if each had taken equally long; or a dataset's rows in the order of x.
+/// Throws std::invalid_argument for a column
 /// that the progress has not.
 Curve read_curve(const InputNode& node, const std::string& x, const std::string& y);
 

@@ -14,6 +14,8 @@ namespace {
 
 using Type = ColumnInfo::Type;
 
+constexpr const char* kDrawn = "drawn";
+
 void add_interval_columns(Table& table) {
   table.columns.push_back({"ci95_low", Type::number, "", "Lower end of its 95 % interval."});
   table.columns.push_back({"ci95_high", Type::number, "", "Upper end of that interval."});
@@ -35,6 +37,18 @@ void add_estimate(std::vector<Cell>& row, const Estimate& estimate) {
 /// A new row with the keys of a group.
 std::vector<Cell>& add_row(Table& table, const FigureInputs& inputs, std::size_t group) {
   return table.rows.emplace_back(inputs.keys.rows[group]);
+}
+
+/// The rows of datasets, one by one.
+void add_observations(Table& table, const FigureInputs& inputs, std::size_t group, const std::string& x,
+                      const std::string& y) {
+  for (const std::size_t entry : inputs.groups[group].entries) {
+    const Curve points = read_points(inputs.nodes[entry], x, y);
+    for (std::size_t k = 0; k < points.x.size(); ++k) {
+      std::vector<Cell>& row = add_row(table, inputs, group);
+      row.insert(row.end(), {points.x[k], std::int64_t{1}, points.y[k], Cell(), Cell(), Cell("point")});
+    }
+  }
 }
 
 /// The means of training runs, or the values of episodes, group by group.
@@ -69,7 +83,7 @@ const std::vector<std::string>& estimate_column_names() {
   return kNames;
 }
 
-Table learning_table(const FigureInputs& inputs, const std::string& x, const std::string& y) {
+Table curve_table(const FigureInputs& inputs, const std::string& x, const std::string& y) {
   constexpr std::size_t kTimes = 200;
   Table table;
   table.columns = inputs.keys.columns;
@@ -77,7 +91,13 @@ Table learning_table(const FigureInputs& inputs, const std::string& x, const std
   table.columns.push_back({x, Type::number, is_time(x) ? "s" : "",
                            is_time(x) ? "Time of learning; differs from run to run." : "Progress."});
   add_estimate_columns(table, y);
+  const bool has_points = inputs.lines < inputs.nodes.size();
+  if (has_points) table.columns.push_back({kDrawn, Type::text, "", "As what: line or point."});
   for (std::size_t i = 0; i < inputs.groups.size(); ++i) {
+    if (inputs.groups[i].entries.front() >= inputs.lines) {
+      add_observations(table, inputs, i, x, y);
+      continue;
+    }
     std::vector<Curve> curves;
     for (const std::size_t entry : inputs.groups[i].entries) {
       curves.push_back(read_curve(inputs.nodes[entry], x, y));
@@ -86,6 +106,7 @@ Table learning_table(const FigureInputs& inputs, const std::string& x, const std
       std::vector<Cell>& row = add_row(table, inputs, i);
       row.emplace_back(point.x);
       add_estimate(row, point.estimate);
+      if (has_points) row.emplace_back("line");
     }
   }
   return table;

@@ -16,10 +16,12 @@ struct FigureInputs {
   const std::vector<InputNode>& nodes;
   const std::vector<TableCell>& groups;
   const Table& keys;  ///< a row for each group
+  std::size_t lines;  ///< of the nodes; those after them are observations
 };
 
-/// The course of learning: mean and interval of a measure over x, a column of progress or a time.
-Table learning_table(const FigureInputs& inputs, const std::string& x, const std::string& y);
+/// The course of learning: mean and interval of a measure over x, a column of progress or a time; or of a
+/// column of datasets over another. Observations are rows of single values, told apart by a column `drawn`.
+Table curve_table(const FigureInputs& inputs, const std::string& x, const std::string& y);
 
 /// A row for each group: mean and interval.
 Table interval_table(const FigureInputs& inputs, Metric metric);

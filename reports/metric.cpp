@@ -1,7 +1,11 @@
 #include "reports/metric.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "engine/data/table_file.h"
 #include "engine/graph/artifacts.h"
@@ -19,8 +23,9 @@ struct Source {
   double sign;
   Better better;
   const char* doc;
+  bool of_fit = false;
 };
-constexpr std::array<Source, 6> kSources = {{
+constexpr std::array<Source, 9> kSources = {{
     {"cost", "mean_return", "sd", "skewness", "return", -1, Better::lower, "cost (minus the sum of rewards)"},
     {"return", "mean_return", "sd", "skewness", "return", 1, Better::higher, "return (sum of rewards)"},
     {"discounted_return", "mean_discounted_return", "sd_discounted_return", "skewness_discounted_return",
@@ -31,10 +36,27 @@ constexpr std::array<Source, 6> kSources = {{
      "number of steps of an episode"},
     {"terminal_rate", "terminal_rate", nullptr, nullptr, "terminal", 1, Better::lower,
      "share of episodes that end in a terminal state"},
+    {"rmse", "rmse", nullptr, nullptr, nullptr, 1, Better::lower, "root mean squared error", true},
+    {"r2", "r2", nullptr, nullptr, nullptr, 1, Better::higher, "share of the variance that is explained",
+     true},
+    {"leaves", "leaves", nullptr, nullptr, nullptr, 1, Better::lower, "number of leaves", true},
 }};
 
 const Source& source(Metric metric) {
   return kSources.at(static_cast<std::size_t>(metric));
+}
+
+Observation observe_fit(const InputNode& node, const Source& from) {
+  const Table table = read_table(node.folder / kScoresFile);
+  if (!table.has(from.mean)) {
+    throw std::invalid_argument(fmt::format("the function of '{}' has no {}", node.id, from.name));
+  }
+  const std::vector<Cell>& row = table.rows.back();
+  Observation seen;
+  seen.episodes = static_cast<std::int64_t>(number(row[table.column("samples")]));
+  seen.mean = number(row[table.column(from.mean)]);
+  seen.is_fit = true;
+  return seen;
 }
 
 }  // namespace
@@ -49,11 +71,22 @@ std::string metric_doc(Metric metric) {
   return source(metric).doc;
 }
 
+void require_metric(const std::vector<InputNode>& nodes, Metric metric) {
+  const std::string artifact = source(metric).of_fit ? "scores" : "evaluation";
+  for (const InputNode& node : nodes) {
+    if (std::find(node.makes.begin(), node.makes.end(), artifact) != node.makes.end()) continue;
+    throw std::invalid_argument(fmt::format("'{}' is of {}, and '{}' (<{}>) makes none", source(metric).name,
+                                            source(metric).of_fit ? "fits" : "evaluations", node.id,
+                                            node.kind));
+  }
+}
+
 Better better(Metric metric) {
   return source(metric).better;
 }
 
 Observation observe(const InputNode& node, Metric metric) {
+  if (source(metric).of_fit) return observe_fit(node, source(metric));
   const Table table = read_table(node.folder / kEvaluationFile);
   const std::vector<Cell>& row = table.rows.at(0);
   const auto value = [&](const char* column) { return number(row[table.column(column)]); };
@@ -74,6 +107,7 @@ Observation observe(const InputNode& node, Metric metric) {
 }
 
 std::vector<double> observe_episodes(const InputNode& node, Metric metric) {
+  if (source(metric).of_fit) return {};
   std::error_code code;
   if (!std::filesystem::exists(node.folder / kReturnsFile, code)) return {};
   const Table table = read_table(node.folder / kReturnsFile);

@@ -57,11 +57,12 @@ struct TableNode : Node {
   static Parameters<TableNode> parameters() {
     using This = TableNode;
     return node_parameters<This>()
-        .references("of", &This::of, "evaluation", "Evaluations to summarize.")
+        .references("of", &This::of, "timing", "Evaluations to summarize; or fits, for their metrics.")
         .add("rows", &This::rows, "",
              "What tells the rows apart: columns of sweeps, problem, policy, node (the evaluation's id).")
         .add("columns", &This::columns, "", "What tells the columns apart, likewise.")
-        .choice("metric", &This::metric, metric_names(), "What is shown.")
+        .choice("metric", &This::metric, metric_names(),
+                "What is shown; rmse, r2 and leaves are of fits, on their test set where they have one.")
         .choice(
             "interval", &This::interval, {"t", "bootstrap"},
             "Interval of the mean: Student's, wider where values are skewed; or the studentized bootstrap "
@@ -81,6 +82,7 @@ struct TableNode : Node {
   };
 
   Content cells_and_values(const NodeContext& context) const {
+    require_metric(context.inputs("of"), metric);
     const TableKeys keys{rows, columns};
     Content content;
     content.cells = arrange(entries_of(context.inputs("of")), keys);
@@ -94,7 +96,7 @@ struct TableNode : Node {
     const std::string what = metric_doc(metric);
     const std::vector<ColumnInfo> columns_of_values = {
         {"n_replicates", Type::integer, "", "Training runs, or other independent repetitions."},
-        {"episodes", Type::integer, "", "Episodes of each evaluation."},
+        {"episodes", Type::integer, "", "Episodes of each evaluation; samples a fit is scored on."},
         {"mean", Type::number, "", fmt::format("Mean {}: over the replicates of their means.", what)},
         {"ci95_low", Type::number, "",
          "Lower end of the 95 % interval of the mean: over training runs; over episodes "
@@ -138,7 +140,7 @@ struct TableNode : Node {
 
 const Component<Node, TableNode> kComponent(
     "table", "Summarize evaluations: mean, interval, interquartile mean, worst and best of replicates.",
-    "Agarwal et al. 2021 (interquartile mean, optimality gap)", 4);
+    "Agarwal et al. 2021 (interquartile mean, optimality gap)", 5);
 
 }  // namespace
 }  // namespace coppice

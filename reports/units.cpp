@@ -14,7 +14,7 @@ Units units_of(const std::vector<InputNode>& nodes, const TableCell& cell, Metri
   for (const std::size_t i : cell.entries) {
     const InputNode& node = nodes[i];
     units.last = observe(node, metric);
-    units.are_runs = units.are_runs || node.replicate || !node.training.empty();
+    units.are_runs = units.are_runs || units.last.is_fit || node.replicate || !node.training.empty();
     const auto known = node.training.empty() ? trainings.end()
                                              : std::find(trainings.begin(), trainings.end(), node.training);
     const auto run = static_cast<std::size_t>(known - trainings.begin());

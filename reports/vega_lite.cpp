@@ -75,6 +75,18 @@ Json layers(const Table& table, Json intervals, Json means) {
   return any ? Json::array({std::move(intervals), std::move(means)}) : Json::array({std::move(means)});
 }
 
+/// A layer of single points; they leave the other layers.
+void add_observations(Json& layers, const std::string& mean) {
+  const auto only = [](const char* what) {
+    return Json::array({{{"filter", {{"field", "drawn"}, {"equal", what}}}}});
+  };
+  for (Json& layer : layers) layer["transform"] = only("line");
+  Json points = {{"transform", only("point")}, {"mark", "point"}};
+  points["encoding"]["y"] = quantitative(mean, "");
+  points["encoding"]["y"].erase("title");
+  layers.push_back(std::move(points));
+}
+
 void draw_line(Json& figure, const Table& table, const FigureLayout& layout, const std::string& x,
                const std::string& mean, const char* shape) {
   group(figure, layout.by, {"color", "strokeDash"});
@@ -100,6 +112,7 @@ void draw_line(Json& figure, const Table& table, const FigureLayout& layout, con
   line["encoding"]["y"] = quantitative(mean, title);
   if (!dash.is_null()) line["encoding"]["strokeDash"] = dash;
   figure["layer"] = layers(table, std::move(band), std::move(line));
+  if (layout.observations) add_observations(figure["layer"], mean);
 }
 
 void draw_intervals(Json& figure, const Table& table, const FigureLayout& layout) {

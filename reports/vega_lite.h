@@ -15,6 +15,7 @@ struct FigureLayout {
   std::vector<std::string>
       by;               ///< columns that tell apart: first in one figure, then in rows and columns of them
   bool points = false;  ///< a mark at each point of a line: there are few, perhaps only one
+  bool observations = false;  ///< rows whose column `drawn` is "point" are no part of lines
 };
 
 /// A Vega-Lite v5 specification with the data inside, as text.

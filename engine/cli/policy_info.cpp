@@ -1,14 +1,12 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "engine/cli/console.h"
 #include "engine/cli/exit_status.h"
 #include "engine/cli/layout.h"
-#include "engine/cli/policy_inputs.h"
+#include "engine/cli/policy_measures.h"
 #include "registry/units.h"
 
 namespace coppice::cli {
@@ -16,33 +14,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Median wall time of one action, over states spread over the state space; s.
-double action_time(const ReadyPolicy& ready) {
-  constexpr std::size_t kStates = 256, kRounds = 41;
-  const Draws draws(0, "latency", 0);
-  const Space& axes = ready.spaces.states;
-  std::vector<double> states(kStates * axes.size());
-  for (std::size_t i = 0; i < kStates; ++i) {
-    for (std::size_t k = 0; k < axes.size(); ++k) {
-      states[i * axes.size() + k] =
-          draws.scenario(i).uniform("state", axes[k].low, axes[k].high, static_cast<std::uint32_t>(k));
-    }
-  }
-  std::vector<double> memory(ready.policy->memory_size());
-  Action action;
-  std::vector<double> times;
-  for (std::size_t round = 0; round < kRounds; ++round) {
-    ready.policy->reset(memory);
-    const auto begin = std::chrono::steady_clock::now();
-    for (std::size_t i = 0; i < kStates; ++i) {
-      ready.policy->act({&states[i * axes.size()], axes.size()}, memory, draws.scenario(i), action);
-    }
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-    times.push_back(taken.count() / kStates);
-  }
-  std::nth_element(times.begin(), times.begin() + kRounds / 2, times.end());
-  return times[kRounds / 2];
-}
+/// What is found out by letting the policy act.
+struct Measures {
+  Latency latency;
+  std::vector<double> importance;
+};
 
 Json json(const Axis& axis) {
   return {{"name", axis.name},
@@ -67,7 +43,7 @@ std::size_t length(const Archive::Array& array) {
   return std::visit([](const auto& values) { return values.size(); }, array);
 }
 
-Json json(const ReadyPolicy& ready, std::uint64_t bytes, double action_s) {
+Json json(const ReadyPolicy& ready, std::uint64_t bytes, const Measures& measures) {
   Json object = {{"component", ready.file.component.name},
                  {"writer", ready.file.writer},
                  {"provenance", ready.file.provenance},
@@ -75,12 +51,18 @@ Json json(const ReadyPolicy& ready, std::uint64_t bytes, double action_s) {
                  {"states", json(ready.spaces.states)},
                  {"actions", Json::array()},
                  {"memory", ready.policy->memory_size()},
-                 {"action_s", action_s},
+                 {"action_s", measures.latency.median},
+                 {"action_p99_s", measures.latency.p99},
+                 {"action_worst_state_s", measures.latency.worst_state},
+                 {"importance", Json::object()},
                  {"facts", Json::object()},
                  {"parameters", to_xml(ready.file.component)},
                  {"arrays", Json::array()}};
   for (const ActionBox& box : ready.spaces.actions) {
     object["actions"].push_back({{"name", box.name}, {"axes", json(box.axes)}});
+  }
+  for (std::size_t k = 0; k < measures.importance.size(); ++k) {
+    object["importance"][ready.spaces.states[k].name] = measures.importance[k];
   }
   for (const auto& [name, value] : ready.policy->facts()) object["facts"][name] = value;
   for (const auto& [name, array] : ready.file.arrays.arrays()) {
@@ -96,20 +78,27 @@ std::vector<std::string> row(const std::string& label, const Axis& axis) {
               (axis.circular ? ", circular" : "")};
 }
 
-std::string text(const ReadyPolicy& ready, std::uint64_t bytes, double action_s) {
+std::string text(const ReadyPolicy& ready, std::uint64_t bytes, const Measures& measures) {
   const auto or_dash = [](const std::string& value) { return value.empty() ? std::string("-") : value; };
   std::vector<std::vector<std::string>> rows = {
       {"policy", ready.file.component.name},
       {"size", fmt::format("{} byte", bytes)},
       {"written by", or_dash(ready.file.writer)},
       {"made by node", or_dash(ready.file.provenance)},
-      {"time per action", fmt::format("{:.2f} us", action_s * 1e6)}};
+      {"time per action",
+       fmt::format("{:.2f} us (median), {:.2f} us (99 %), {:.2f} us (worst state's median); measured here",
+                   measures.latency.median * 1e6, measures.latency.p99 * 1e6,
+                   measures.latency.worst_state * 1e6)}};
   for (const auto& [name, value] : ready.policy->facts()) rows.push_back({name, number_text(value)});
   for (const auto& [name, array] : ready.file.arrays.arrays()) {
     rows.push_back({"array", fmt::format("{}: {} x {}", name, length(array), type_name(array))});
   }
   std::vector<std::vector<std::string>> axes;
-  for (const Axis& axis : ready.spaces.states) axes.push_back(row("state", axis));
+  for (std::size_t k = 0; k < ready.spaces.states.size(); ++k) {
+    std::vector<std::string>& cells = axes.emplace_back(row("state", ready.spaces.states[k]));
+    if (measures.importance.empty()) continue;
+    cells.push_back(fmt::format("importance {:.3f}", measures.importance[k]));
+  }
   for (std::size_t id = 0; id < ready.spaces.actions.size(); ++id) {
     const ActionBox& box = ready.spaces.actions[id];
     const std::string label = fmt::format("action {} {}", id, box.name);
@@ -128,20 +117,27 @@ struct PolicyInfo : PolicyInputs {
 
   int run(const CommandLine& line, Console& console) const {
     const ReadyPolicy ready = ready_policy(line, *this);
-    const double action_s = action_time(ready);
+    const Measures measures{measure_latency(ready), importance(ready)};
     const std::uint64_t bytes = std::filesystem::file_size(file);
-    console.out(as_json ? json(ready, bytes, action_s).dump(2) + '\n' : text(ready, bytes, action_s));
+    console.out(as_json ? json(ready, bytes, measures).dump(2) + '\n' : text(ready, bytes, measures));
     return kDone;
   }
 };
 
-const Command<PolicyInfo> kPolicyInfo(
-    {.name = "policy info",
-     .group = Group::policies,
-     .doc = "Shows what a policy file holds: component, spaces, origin, sizes, time per action.",
-     .details = "The time per action is measured: the median over states spread over the state space.",
-     .examples = {{"runner policy info learned.policy", "For people."},
-                  {"runner policy info learned.policy --json", "For programs."}}});
+const Command<PolicyInfo> kPolicyInfo({.name = "policy info",
+                                       .group = Group::policies,
+                                       .doc = "Shows what a policy file holds: component, spaces, origin, "
+                                              "sizes, which inputs matter, time per action.",
+                                       .details = "The time per action is measured here, over states spread "
+                                                  "over the state space. Importance is that of a "
+                                                  "state axis for the actions: the part of their variance "
+                                                  "over the state space that is lost when it alone "
+                                                  "is not known (the total-effect index). Of forests, visits "
+                                                  "is the largest number of nodes that an action "
+                                                  "can take.",
+                                       .examples = {
+                                           {"runner policy info learned.policy", "For people."},
+                                           {"runner policy info learned.policy --json", "For programs."}}});
 
 }  // namespace
 }  // namespace coppice::cli

@@ -130,14 +130,18 @@ std::vector<std::string> value_columns(const Spaces& spaces, bool of_actions) {
   return columns;
 }
 
-MadeFunction load_value_function(const InputNode& node, const Spaces& spaces) {
-  if (node.folder.empty()) return {};
+FunctionFile load_function_file(const InputNode& node) {
   const fs::path trained = node.folder / kValueFile;
   const fs::path path = fs::exists(trained) ? trained : node.folder / kFunctionFile;
   if (!fs::exists(path)) {
     throw ConfigError(fmt::format("node '{}' made no value function: its solver has none", node.id));
   }
-  const FunctionFile file = read_function_file(path);
+  return read_function_file(path);
+}
+
+MadeFunction load_value_function(const InputNode& node, const Spaces& spaces) {
+  if (node.folder.empty()) return {};
+  const FunctionFile file = load_function_file(node);
   const std::vector<std::string> axes = value_columns(spaces, false);
   if (file.inputs != axes && file.inputs != value_columns(spaces, true)) {
     throw ConfigError(fmt::format(

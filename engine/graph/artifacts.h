@@ -23,6 +23,7 @@ inline constexpr std::string_view kDatasetFile = "dataset.csv";
 inline constexpr std::string_view kFunctionFile = "function.function";  ///< of a fit
 inline constexpr std::string_view kValueFile = "value.function";        ///< of a training
 inline constexpr std::string_view kEvaluationFile = "evaluation.csv";
+inline constexpr std::string_view kScoresFile = "scores.csv";  ///< of a fit
 inline constexpr std::string_view kReturnsFile = "returns.csv";
 inline constexpr std::string_view kProgressFile = "progress.csv";
 inline constexpr std::string_view kSelectionFile = "selection.csv";
@@ -91,6 +92,8 @@ struct FunctionFile {
 /// As write_policy_file, read_policy_file and make_policy.
 void write_function_file(const std::filesystem::path& file, const FunctionFile& content);
 FunctionFile read_function_file(const std::filesystem::path& file);
+/// That of a node that makes a function (fit, train), which has run.
+FunctionFile load_function_file(const InputNode& node);
 MadeFunction make_function(const FunctionFile& file);
 
 }  // namespace coppice

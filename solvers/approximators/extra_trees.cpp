@@ -99,9 +99,9 @@ class RegressionTree : public Approximator, public TreeParameters {
 
 const Component<Approximator, ExtraTrees> kForest(
     "extra_trees", "Forest of extremely randomized trees, with constant or linear leaves.",
-    "Geurts, Ernst and Wehenkel, Machine Learning 63 (2006); L. Hofer's thesis (2017), 2.1.5", 3);
+    "Geurts, Ernst and Wehenkel, Machine Learning 63 (2006); L. Hofer's thesis (2017), 2.1.5", 4);
 const Component<Approximator, RegressionTree> kTree("regression_tree", "A single extremely randomized tree.",
-                                                    "L. Hofer's thesis (2017), Algorithm 6", 3);
+                                                    "L. Hofer's thesis (2017), Algorithm 6", 4);
 
 }  // namespace
 }  // namespace coppice

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <vector>
 
@@ -19,6 +20,17 @@ struct Bound {
   double low = 0;
   double high = 0;
   double least = 0;
+};
+
+// A sum of linear models, without their ranges.
+struct LinearSum {
+  double bias;
+  std::array<double, kMaxActionSize> slopes;
+
+  void add(const double* model, std::size_t inputs) {
+    bias += model[0];
+    for (std::size_t i = 0; i < inputs; ++i) slopes[i] += model[1 + i];
+  }
 };
 
 // Branch and bound over the cells in which every tree of a projected forest is at a leaf. A branch is a
@@ -87,21 +99,29 @@ class ExactMaximum {
     const std::size_t count = trees_.size();
     const std::size_t here = level * count;
     Bound sum;
+    LinearSum leaves{};
+    const bool linear = trees_[0].leaf == LeafModel::linear;
     std::size_t widest = count;
     double spread = -1;
     for (std::size_t t = 0; t < count; ++t) {
       const std::int32_t node = at_[here + t];
+      const bool is_leaf = trees_[t].nodes[node].child == node;
       const Bound& b = bound_of(t, node);
-      sum.model += b.model;
+      if (is_leaf && linear) {
+        leaves.add(trees_[t].model(node), box_->low.size());
+      } else {
+        sum.model += b.model;
+      }
       sum.low += b.low;
       sum.high += b.high;
       if (trims_) values_[t] = b.model;
-      if (trees_[t].nodes[node].child == node) continue;
+      if (is_leaf) continue;
       if (const double s = b.high - b.least; s > spread) {
         spread = s;
         widest = t;
       }
     }
+    if (linear) sum.model += most_of(leaves);
     const double most = trims_ ? trimmed_mean(values_)
                                : std::clamp(sum.model, sum.low, sum.high) / static_cast<double>(count);
     if (found_ && !(most > best_.value)) return;
@@ -112,6 +132,17 @@ class ExactMaximum {
     const double high_bound = bound_of(widest, split.child + 1).model;
     branch(level, split, low_bound >= high_bound);
     branch(level, split, low_bound < high_bound);
+  }
+
+  // At most in the region: the leaves of a sum are largest in one corner of it, not each in its own of its
+  // own box.
+  double most_of(const LinearSum& sum) const {
+    double most = sum.bias;
+    for (std::size_t i = 0; i < box_->low.size(); ++i) {
+      const double low = sum.slopes[i] * std::max(region_.low(i), box_->low[i]);
+      most += std::max(low, sum.slopes[i] * region_.high(i));
+    }
+    return most;
   }
 
   void branch(std::size_t level, const TreeNode& split, bool low) {

@@ -214,6 +214,35 @@ void weighted_average(const Tree& t1, const Tree& t2, double w1, double w2, cons
   Average(t1, t2, w1, w2, box, scratch_region(), out);
 }
 
+// Children follow their parents, in pairs, so that what is used can be moved to the front in its order.
+void drop_unused(Tree& tree) {
+  std::vector<std::int32_t> place(tree.nodes.size(), -1);  // of what is used; else -1
+  std::vector<double> models;
+  const auto width = static_cast<std::ptrdiff_t>(model_width(tree.inputs));
+  place[0] = 0;
+  std::int32_t size = 1;
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    const TreeNode node = tree.nodes[i];
+    if (place[i] < 0 || tree.is_leaf(static_cast<std::int32_t>(i))) continue;
+    place[node.child] = size++;
+    place[node.child + 1] = size++;
+  }
+  std::vector<TreeNode> nodes(static_cast<std::size_t>(size));
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    if (place[i] < 0) continue;
+    TreeNode node = tree.nodes[i];
+    if (tree.leaf == LeafModel::linear && tree.is_leaf(static_cast<std::int32_t>(i))) {
+      const double* model = tree.model(static_cast<std::int32_t>(i));
+      node.value = static_cast<double>(models.size() / static_cast<std::size_t>(width));
+      models.insert(models.end(), model, model + width);
+    }
+    node.child = place[node.child];
+    nodes[place[i]] = node;
+  }
+  tree.nodes = std::move(nodes);
+  tree.models = std::move(models);
+}
+
 void merge(std::span<const Tree> trees, const Box& box, std::size_t max_leaves, Tree& out) {
   thread_local Tree pruned;
   thread_local Tree sum;

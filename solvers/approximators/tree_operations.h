@@ -36,6 +36,9 @@ void weighted_average(const Tree& t1, const Tree& t2, double w1, double w2, cons
 /// not count in volumes.
 void prune(Tree& tree, const Box& box, std::size_t max_leaves);
 
+/// Removes the nodes and models that pruning has cut off.
+void drop_unused(Tree& tree);
+
 /// One tree for the mean of several, of at most `max_leaves` leaves (Algorithm 12).
 void merge(std::span<const Tree> trees, const Box& box, std::size_t max_leaves, Tree& out);
 

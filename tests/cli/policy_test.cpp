@@ -53,6 +53,31 @@ TEST_F(PolicyFiles, InfoShowsWhatTheFileHolds) {
   EXPECT_EQ(json.at("bytes"), fs::file_size(folder_ / "lqr.policy"));
   EXPECT_GT(json.at("action_s").get<double>(), 0);
   EXPECT_LT(json.at("action_s").get<double>(), 1e-3);
+  EXPECT_LE(json.at("action_s"), json.at("action_p99_s"));
+  EXPECT_EQ(json.at("importance").size(), 2U);
+}
+
+// a = -(g1 p + g2 v), clipped to [-1, 1]; with small gains nothing is clipped, and the shares of the variance
+// of p and v, both uniform in [-1, 1], are those of the squared gains.
+TEST_F(PolicyFiles, InfoShowsWhichInputsMatter) {
+  const auto importance = [&](const std::string& gains) {
+    Element element;
+    element.name = "linear_feedback";
+    element.set("gains", gains);
+    Diagnostics diagnostics;
+    PolicyFile content = read_policy_file(folder_ / "lqr.policy");
+    content.component = make<Policy>(element, diagnostics).resolved;
+    diagnostics.throw_if_any();
+    write_policy_file(folder_ / "gains.policy", content);
+    return nlohmann::json::parse(runner("policy info gains.policy --json", folder_.path()).out)
+        .at("importance");
+  };
+  const nlohmann::json both = importance("0.4, 0.3");
+  EXPECT_NEAR(both.at("position").get<double>(), 0.64, 0.04);
+  EXPECT_NEAR(both.at("speed").get<double>(), 0.36, 0.03);
+  EXPECT_EQ(importance("0.4, 0").at("speed"), 0);
+  EXPECT_NEAR(importance("0.4, 0").at("position").get<double>(), 1, 1e-12);
+  EXPECT_TRUE(importance("0, 0").empty()) << "a constant";
 }
 
 TEST_F(PolicyFiles, ActTakesAByteOrderMark) {

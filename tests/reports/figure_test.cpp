@@ -35,6 +35,15 @@ class FigureTest : public ::testing::Test {
     write_file(node.folder / kEvaluationFile,
                "episodes,mean_return,sd,skewness\n5," + cell_text(mean_return) + ",1,0\n");
   }
+  void dataset(const std::string& parameter, const std::string& id, const std::string& csv) {
+    InputNode& node = context.given[parameter].emplace_back();
+    node.id = id;
+    node.makes = {"dataset", "timing"};
+    node.columns = {"x", "y"};
+    node.folder = context.folder() / (parameter + id);
+    std::filesystem::create_directory(node.folder);
+    write_file(node.folder / kDatasetFile, "x,y\n" + csv);
+  }
   Table made(Attributes attributes) {
     attributes.insert(attributes.begin(), {{"id", "f"}, {"of", "n"}});
     const Sub<Node> node = make_node(element("figure", attributes));
@@ -94,6 +103,34 @@ TEST_F(FigureTest, DrawsEvaluationsOverASweep) {
   EXPECT_EQ(value(table, 1, "mean"), 5);
   EXPECT_EQ(value(table, 1, "n"), 3);
   EXPECT_EQ(drawing.at("layer").at(1).at("mark").at("point"), true) << "two points, or one, are no line";
+}
+
+TEST_F(FigureTest, DrawsLinesOfDatasetsBesideObservations) {
+  dataset("of", "truth", "2,4\n0,0\n1,1\n");
+  dataset("of", "learned", "0,1\n2,5\n");
+  dataset("observations", "seen", "1.5,2\n0.5,0\n");
+  const Table table = made({{"observations", "seen"}, {"x", "x"}, {"y", "y"}, {"by", "node"}});
+  ASSERT_EQ(table.rows.size(), 3u + 2u + 2u);
+  EXPECT_EQ(value(table, 1, "x"), 1) << "in the order of x";
+  EXPECT_EQ(value(table, 2, "mean"), 4);
+  EXPECT_EQ(cell_text(table.rows[4][table.column("node")]), "learned");
+  EXPECT_EQ(cell_text(table.rows[4][table.column("drawn")]), "line");
+  EXPECT_EQ(cell_text(table.rows[5][table.column("node")]), "seen");
+  EXPECT_EQ(cell_text(table.rows[5][table.column("drawn")]), "point");
+  EXPECT_EQ(value(table, 5, "x"), 1.5);
+  const nlohmann::json& layers = drawing.at("layer");
+  EXPECT_EQ(layers.front().at("mark").at("type"), "line");
+  EXPECT_EQ(layers.front().at("transform").at(0).at("filter").at("equal"), "line");
+  EXPECT_EQ(layers.back().at("mark"), "point");
+  EXPECT_EQ(layers.back().at("encoding").at("y").at("field"), "mean");
+}
+
+TEST_F(FigureTest, RefusesColumnsThatADatasetHasNot) {
+  dataset("of", "truth", "0,0\n");
+  EXPECT_THROW(made({{"x", "z"}, {"y", "y"}}), std::invalid_argument);
+  EXPECT_THROW(made({{"x", "x"}, {"y", "cost"}}), std::invalid_argument);
+  EXPECT_THROW(made({{"y", "y"}}), std::invalid_argument);
+  EXPECT_THROW(made({{"kind", "histogram"}, {"y", "y"}}), std::invalid_argument);
 }
 
 TEST_F(FigureTest, CountsEveryRunOnceInAHistogram) {

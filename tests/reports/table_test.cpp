@@ -31,6 +31,7 @@ class TableTest : public ::testing::Test {
     for (const Evaluation& made : evaluations) {
       InputNode& node = nodes.emplace_back();
       node.id = "scores";
+      node.makes = {"evaluation", "timing"};
       node.replicate = made.replicate;
       node.training = made.training;
       node.labels = {{"problem", "car"}, {"policy", made.policy}};
@@ -63,6 +64,31 @@ class TableTest : public ::testing::Test {
 
   FakeContext context;
 };
+
+TEST_F(TableTest, SummarizesFitsOnTheirTestSets) {
+  for (int r = 0; r < 2; ++r) {
+    InputNode& node = context.given["of"].emplace_back();
+    node.id = "forest";
+    node.makes = {"function", "scores", "timing"};
+    node.replicate = r;
+    node.folder = context.folder() / std::to_string(r);
+    std::filesystem::create_directory(node.folder);
+    write_file(node.folder / kScoresFile,
+               "set,samples,rmse,r2,leaves\ntrain,9,0,1,7\ntest,50," + cell_text(1.0 + r) + ",0.5,7\n");
+  }
+  const Table table = made({{"rows", "node"}, {"metric", "rmse"}});
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(value(table, 0, "mean"), 1.5);
+  EXPECT_EQ(value(table, 0, "n_replicates"), 2);
+  EXPECT_EQ(value(table, 0, "episodes"), 50);
+  EXPECT_EQ(value(table, 0, "worst"), 2);
+  EXPECT_NEAR(value(table, 0, "ci95_high"), 1.5 + 12.7062 * std::sqrt(0.5) / std::sqrt(2), 1e-4);
+  EXPECT_EQ(value(made({{"rows", "node"}, {"metric", "leaves"}}), 0, "mean"), 7);
+  EXPECT_THROW(made({{"rows", "node"}, {"metric", "cost"}}), std::invalid_argument);
+  context.given["of"].pop_back();
+  EXPECT_TRUE(std::isnan(value(made({{"rows", "node"}, {"metric", "rmse"}}), 0, "ci95_low")))
+      << "one training run has no interval";
+}
 
 TEST_F(TableTest, SummarizesTrainingRuns) {
   // Costs 1, 2, 3, 6: mean 3, deviation sqrt(14/3), t(0.975, 3) = 3.182446, interquartile mean of 2 and 3.

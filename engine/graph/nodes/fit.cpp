@@ -5,11 +5,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "engine/data/csv.h"
 #include "engine/data/table_file.h"
 #include "engine/graph/artifacts.h"
+#include "engine/graph/nodes/dataset_columns.h"
 #include "engine/statistics/estimates.h"
-#include "registry/suggest.h"
 
 namespace coppice {
 namespace {
@@ -19,52 +18,17 @@ struct Samples {
   Matrix x, y;
 };
 
-/// Appends the values of the named columns, row after row. Throws ConfigError with file, line and column for
-/// a cell that is no number.
-void read_values(const std::filesystem::path& file, const std::vector<std::string>& names,
-                 std::vector<double>& values) {
-  CsvReader reader(read_source(file.string()));
-  std::vector<std::size_t> fields;
-  for (const std::string& name : names) {
-    const std::optional<std::size_t> field = reader.column(name);
-    if (!field) {
-      throw ConfigError({Diagnostic{reader.header_place(0),
-                                    fmt::format("there is no column '{}'", name),
-                                    suggestion(name, reader.header()),
-                                    {}}});
-    }
-    fields.push_back(*field);
-  }
-  while (reader.next()) {
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      const std::optional<double> value = parse_number(reader[fields[i]]);
-      if (!value) {
-        throw ConfigError({Diagnostic{reader.place(fields[i]),
-                                      fmt::format("'{}' is no number, which fitting '{}' needs in every row",
-                                                  reader[fields[i]], names[i]),
-                                      {},
-                                      {}}});
-      }
-      values.push_back(*value);
-    }
-  }
-}
-
 /// The rows of all the datasets, one after the other.
 Samples read_samples(const std::vector<InputNode>& datasets, const std::vector<std::string>& inputs,
                      const std::string& output) {
   std::vector<std::string> names = inputs;
   names.push_back(output);
-  std::vector<double> values;
-  for (const InputNode& dataset : datasets) read_values(dataset.folder / kDatasetFile, names, values);
-  const std::size_t rows = values.size() / names.size();
-  if (rows == 0) throw ConfigError(fmt::format("'{}' has no rows", datasets.front().id));
-  Samples samples{Matrix(rows, inputs.size()), Matrix(rows, 1)};
-  for (std::size_t i = 0; i < rows; ++i) {
-    const std::span<const double> row(values.data() + i * names.size(), names.size());
-    samples.x.set_row(i, row.first(inputs.size()));
-    samples.y(i, 0) = row.back();
-  }
+  const Matrix table = read_columns(datasets, names);
+  Samples samples{Matrix(table.rows(), inputs.size()), Matrix(table.rows(), 1)};
+  const std::span<const double> values = table.values();
+  std::copy_n(values.begin(), samples.x.values().size(), samples.x.values().begin());
+  std::copy_n(values.end() - static_cast<std::ptrdiff_t>(table.rows()), table.rows(),
+              samples.y.values().begin());
   return samples;
 }
 
@@ -94,7 +58,7 @@ struct FitNode : Node {
   Sub<Approximator> approximator;
 
   std::vector<std::string> makes() const override { return {"function", "scores", "timing"}; }
-  std::vector<std::string> labelled_tables() const override { return {"scores.csv"}; }
+  std::vector<std::string> labelled_tables() const override { return {std::string(kScoresFile)}; }
   bool gathers_replicates(std::string_view parameter) const override {
     return parameter == "samples" || parameter == "test";
   }
@@ -110,7 +74,10 @@ struct FitNode : Node {
 
   void check(const NodeContext& context) const override {
     Diagnostics mistakes;
-    check_columns(context, mistakes);
+    for (const std::string_view parameter : {"samples", "test"}) {  // each must have every column
+      check_columns(context.inputs(parameter), "inputs", inputs, mistakes);
+      check_columns(context.inputs(parameter), "output", {output}, mistakes);
+    }
     if (!test.id.empty()) check_test(context, mistakes);
     mistakes.throw_if_any();
   }
@@ -137,7 +104,11 @@ struct FitNode : Node {
     if (!test.id.empty()) {
       scores.rows.push_back(score("test", *function, read_samples(context.inputs("test"), inputs, output)));
     }
-    write_table(context.folder() / "scores.csv", scores);
+    for (const auto& [fact, value] : function->facts()) {
+      scores.columns.push_back({fact, Type::number, "", "Of the function."});
+      for (std::vector<Cell>& row : scores.rows) row.emplace_back(value);
+    }
+    write_table(context.folder() / kScoresFile, scores);
     context.count("samples", static_cast<std::int64_t>(training.x.rows()));
   }
 
@@ -153,22 +124,6 @@ struct FitNode : Node {
   }
 
  private:
-  /// Every column must be in both datasets, as far as their columns are known.
-  void check_columns(const NodeContext& context, Diagnostics& mistakes) const {
-    const auto check = [&](const InputNode& data, std::string_view parameter, const std::string& column) {
-      const std::vector<std::string>& known = data.columns;
-      if (known.empty() || std::find(known.begin(), known.end(), column) != known.end()) return;
-      mistakes.error({}, fmt::format("{}: the dataset '{}' has no column '{}'", parameter, data.id, column),
-                     suggestion(column, known));
-    };
-    for (const std::string_view parameter : {"samples", "test"}) {
-      for (const InputNode& data : context.inputs(parameter)) {
-        for (const std::string& column : inputs) check(data, "inputs", column);
-        check(data, "output", output);
-      }
-    }
-  }
-
   /// A test on what was trained on measures nothing.
   static void check_test(const NodeContext& context, Diagnostics& mistakes) {
     for (const InputNode& train : context.inputs("samples")) {
@@ -185,7 +140,7 @@ struct FitNode : Node {
 };
 
 const Component<Node, FitNode> kComponent("fit", "Fit a function to the columns of a dataset, and score it.",
-                                          "no publication");
+                                          "no publication", 2);
 
 }  // namespace
 }  // namespace coppice

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/graph/node.h"
+#include "engine/vocabulary/matrix.h"
+
+namespace coppice {
+
+/// The named columns of the datasets, their rows one after the other. Throws ConfigError with file, line and
+/// column for a cell that is no number, and when there are no rows.
+Matrix read_columns(const std::vector<InputNode>& datasets, const std::vector<std::string>& names);
+
+/// Adds a mistake for each column that a dataset has not, as far as its columns are known. `parameter` is
+/// where the user named them.
+void check_columns(const std::vector<InputNode>& datasets, const std::string& parameter,
+                   const std::vector<std::string>& names, Diagnostics& mistakes);
+
+}  // namespace coppice
