@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "solvers/approximators/forest_function.h"
@@ -122,10 +123,124 @@ TEST(ExtraTrees, Learns) {
   }
 }
 
+// Also where there were no samples, and for leaves with as few samples as their models have numbers.
+TEST(ExtraTrees, PredictionsLeaveTheRangeOfTheOutputsByTheMarginAtMost) {
+  constexpr std::size_t kPoints = 200000;  // for each of five: a million
+  const Samples samples(3000, 3);
+  const auto outputs = samples.y.column(0);
+  const auto [least, most] = std::minmax_element(outputs.begin(), outputs.end());
+  Stream stream = kDraws.stream("everywhere");
+  Matrix x(kPoints, 3), y(kPoints, 2);
+  for (double& value : x.values()) value = stream.uniform(-2, 2);
+  for (const auto& [xml, margin] :
+       {std::pair{"<extra_trees trees=\"5\"/>", 0.0},
+        {"<extra_trees trees=\"5\" leaves=\"pwl\" n_min=\"4\"/>", 0.0},
+        {"<extra_trees trees=\"5\" leaves=\"pwl\" n_min=\"4\" aggregation=\"trimmed_mean\"/>", 0.0},
+        {"<regression_tree leaves=\"pwl\" n_min=\"4\"/>", 0.0},
+        {"<regression_tree leaves=\"pwl\" n_min=\"60\" margin=\"0.25\"/>", 0.25}}) {
+    fit(xml, samples)->predict_batch(x, y);
+    const auto predicted = y.column(0);
+    const auto [low, high] = std::minmax_element(predicted.begin(), predicted.end());
+    const double room = (margin + 1e-6) * (*most - *least);  // samples are in single precision
+    EXPECT_GE(*low, *least - room) << xml;
+    EXPECT_LE(*high, *most + room) << xml;
+    if (margin > 0) {
+      EXPECT_TRUE(*low < *least || *high > *most) << "the margin is used";
+    }
+  }
+}
+
+double error_on(const Function& function, const Matrix& x, const std::vector<double>& truth) {
+  Matrix y(x.rows(), 1);
+  function.predict_batch(x, y);
+  double squares = 0;
+  for (std::size_t i = 0; i < x.rows(); ++i) squares += (y(i, 0) - truth[i]) * (y(i, 0) - truth[i]);
+  return std::sqrt(squares / static_cast<double>(x.rows()));
+}
+
+// With so many samples in a leaf that what a model cannot follow is more than what noise does to it. (Noise
+// hurts linear models more: with 40 samples in a leaf, constants follow the sine of one of three inputs
+// better.)
+TEST(ExtraTrees, LinearLeavesBeatAtLeastAsManyConstantOnesOnSmoothFunctions) {
+  using Smooth = double (*)(const double*);
+  const std::vector<std::pair<std::string, Smooth>> functions = {
+      {"sine", [](const double* x) { return std::sin(3 * x[0]) + 0.0 * x[1]; }},
+      {"product", [](const double* x) { return x[0] * x[1]; }},
+      {"bump", [](const double* x) { return std::exp(-4 * (x[0] * x[0] + x[1] * x[1])); }},
+      {"friedman",
+       [](const double* x) { return std::sin(0.785 * (1 + x[0]) * (1 + x[1])) + 0.5 * x[2] * x[2]; }}};
+  for (const auto& [name, function] : functions) {
+    Stream stream = kDraws.stream("smooth");
+    Matrix x(4000, 3), y(4000, 1), fresh(5000, 3);
+    std::vector<double> truth(5000), point(3);
+    for (double& value : x.values()) value = stream.uniform(-1, 1);
+    for (double& value : fresh.values()) value = stream.uniform(-1, 1);
+    for (std::size_t i = 0; i < x.rows(); ++i) {
+      x.row(i, point);
+      y(i, 0) = function(point.data()) + 0.05 * stream.normal();
+    }
+    for (std::size_t i = 0; i < fresh.rows(); ++i) {
+      fresh.row(i, point);
+      truth[i] = function(point.data());
+    }
+    Serial serial;
+    const auto fitted = [&](const std::string& attributes) {
+      return make_from_xml<Approximator>("<extra_trees " + attributes + "/>")
+          ->fit({x, y, {}}, kDraws, serial);
+    };
+    const MadeFunction linear = fitted("leaves=\"pwl\" n_min=\"150\"");
+    int n_min = 150;
+    MadeFunction constant = fitted("n_min=\"150\"");
+    while (forest(constant).leaves() < forest(linear).leaves())
+      constant = fitted("n_min=\"" + std::to_string(--n_min) + "\"");
+    EXPECT_GE(n_min, 110) << name << ": about as many leaves";
+    EXPECT_LT(error_on(*linear, fresh, truth), error_on(*constant, fresh, truth)) << name;
+  }
+}
+
+// One to forty inputs, several outputs, weights, ties, a constant column: each output is learned from the
+// input it is made of, alike by any threads, and no split is along what does not vary.
+TEST(ExtraTrees, LearnsFromSamplesOfAnyShape) {
+  for (const std::size_t inputs : {1, 2, 5, 17, 40}) {
+    for (const std::string leaves : {"pwc", "pwl"}) {
+      Samples samples(1500, inputs);
+      Stream stream = kDraws.stream("shape", inputs);
+      const std::size_t still = inputs - 1;
+      for (std::size_t i = 0; i < samples.x.rows(); ++i) {
+        samples.x(i, 0) = std::round(8 * samples.x(i, 0)) / 8;  // ties
+        if (inputs > 1) samples.x(i, still) = 0.7;
+        samples.y(i, 0) = samples.x(i, 0);
+        samples.y(i, 1) = -2 * samples.x(i, 0) + 5;
+        samples.weights.push_back(static_cast<double>(stream.below(4)));
+      }
+      const std::string xml = "<extra_trees trees=\"5\" leaves=\"" + leaves + "\"/>";
+      const MadeFunction function = fit(xml, samples);
+      Threads threads(2);
+      EXPECT_EQ(forest(make_from_xml<Approximator>(xml)->fit({samples.x, samples.y, samples.weights}, kDraws,
+                                                             threads)),
+                forest(function));
+      Matrix y(samples.x.rows(), 2);
+      function->predict_batch(samples.x, y);
+      double squares = 0;
+      for (std::size_t i = 0; i < y.rows(); ++i) {
+        squares += std::pow(y(i, 0) - samples.y(i, 0), 2) + std::pow((y(i, 1) - samples.y(i, 1)) / 2, 2);
+      }
+      const double error = std::sqrt(squares / static_cast<double>(2 * y.rows()));
+      EXPECT_LT(error, 0.1) << inputs << " inputs, " << leaves << ": the outputs' deviation is 0.6";
+      for (std::size_t t = 0; inputs > 1 && t < 5; ++t) {
+        const ForestTree tree = forest(function).tree(0, t);
+        const std::uint32_t end =
+            t + 1 < 5 ? forest(function).tree(0, t + 1).root : forest(function).tree(1, 0).root;
+        for (std::uint32_t node = tree.root; node < end; ++node) ASSERT_NE(tree.nodes[node].feature(), still);
+      }
+    }
+  }
+}
+
 TEST(ExtraTrees, RefusesWhatIsOutOfBounds) {
   for (const std::string given :
        {"trees=\"0\"", "trees=\"100001\"", "k=\"0\"", "n_min=\"0\"", "v_min=\"-1\"", "margin=\"-0.1\"",
-        "v_min=\"nan\"", "leaves=\"gp\"", "n_min=\"1.5\"", "too_few=\"keep\""}) {
+        "v_min=\"nan\"", "leaves=\"gp\"", "n_min=\"1.5\"", "too_few=\"keep\"", "aggregation=\"median\""}) {
     EXPECT_THROW(make_from_xml<Approximator>("<extra_trees " + given + "/>"), ConfigError) << given;
   }
 }
