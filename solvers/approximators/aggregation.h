@@ -1,9 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 
 namespace coppice {
@@ -20,17 +18,8 @@ constexpr std::size_t trimmed_on_each_side(std::size_t trees) {
   return trees == 0 ? 0 : std::min((trees + 9) / 10, (trees - 1) / 2);
 }
 
-/// The trimmed mean of `values`, which it puts into another order; NaN when one of them is. It rises with
+/// The trimmed mean of `values`, which it may put into another order; NaN when one of them is. It rises with
 /// each of them, so trimmed means of bounds are bounds.
-inline double trimmed_mean(std::span<double> values) {
-  for (const double value : values) {
-    if (std::isnan(value)) return std::numeric_limits<double>::quiet_NaN();
-  }
-  std::sort(values.begin(), values.end());
-  const std::size_t cut = trimmed_on_each_side(values.size());
-  double sum = 0;
-  for (const double value : values.subspan(cut, values.size() - 2 * cut)) sum += value;
-  return sum / static_cast<double>(values.size() - 2 * cut);
-}
+double trimmed_mean(std::span<double> values);
 
 }  // namespace coppice

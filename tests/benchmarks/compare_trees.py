@@ -119,6 +119,8 @@ def fit_constant(ours, table, options):
     kernels = ours.ask("kernels")["name"]
     sizes = [(10**4, 3), (10**4, 9)] if options.quick else [(10**4, 3), (10**5, 3), (10**5, 9), (10**6, 9)]
     for rows, inputs in sizes:
+        if rows > options.up_to:
+            continue
         data = Data(ours, rows, inputs)
         for leaf in (10, 1):
             peer, same, redraw = [], [], []
@@ -261,6 +263,7 @@ def main():
     parser.add_argument("quick", nargs="?", choices=["quick"], help="small sizes only")
     parser.add_argument("--rounds", type=int, default=5, help="interleaved rounds (default 5)")
     parser.add_argument("--only", action="append", choices=SECTIONS, help="a section of the table")
+    parser.add_argument("--up-to", type=int, default=10**6, help="fits of more samples are left out (default 1000000)")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         ours = Ours(options.driver, folder)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Compares forests with scikit-learn's ExtraTreesRegressor (Debian's package, which it installs) and with a textbook
 # layout of trees, on Friedman's function 1; prints one table. docs/benchmarks.md says what it means.
-#   tests/benchmarks/compare_trees.sh [quick] [--rounds N] [--only SECTION]...
+#   tests/benchmarks/compare_trees.sh [quick] [--rounds N] [--up-to SAMPLES] [--only SECTION]...
 # COPPICE_KERNELS=portable (or avx2) measures what processors without the faster instructions get.
 set -eu
 cd "$(dirname "$0")/../.."

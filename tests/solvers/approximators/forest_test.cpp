@@ -130,6 +130,15 @@ TEST(TrimmedMean, LeavesOutTheTenthRoundedUpButNeverAll) {
   EXPECT_EQ(trimmed_on_each_side(11), 2u);
   EXPECT_EQ(trimmed_on_each_side(25), 3u) << "as in the thesis's code";
   EXPECT_EQ(of_first(25), 12);
+  for (const std::size_t size : {2, 5, 9, 10, 11, 20, 25, 60, 61, 100, 250}) {
+    for (const int levels : {1, 2, 8}) {  // few: many are equal
+      Stream stream = kDraws.stream("values", size);
+      std::vector<double> values(size);
+      for (double& value : values) value = eighth(stream, 0, levels) - (size % 2 == 0 ? 1 : 0);
+      const double expected = trimmed_by_hand(values);
+      EXPECT_EQ(trimmed_mean(values), expected) << size << " values";
+    }
+  }
   std::vector<double> with_nan = {1, std::numeric_limits<double>::quiet_NaN(), 2, 3};
   EXPECT_TRUE(std::isnan(trimmed_mean(with_nan)));
 }
