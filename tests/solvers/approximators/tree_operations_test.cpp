@@ -59,7 +59,7 @@ TEST(Projection, IsTheTreeAsAFunctionOfItsLastInputs) {
 TEST(WeightedAverage, IsTheWeightedAverageAtEveryPoint) {
   constexpr std::array<std::array<double, 2>, 5> kWeights = {{{1, 1}, {3, 1}, {1, 7}, {0, 4}, {0.5, 1.5}}};
   Tree average;
-  for (std::uint64_t trial = 0; trial < 10000; ++trial) {
+  for (std::uint64_t trial = 0; trial < 5000; ++trial) {
     Stream stream = stream_of(trial);
     const std::size_t inputs = 1 + stream.below(3);
     const Tree a = random_tree(stream, {inputs, kLeaves[stream.below(2)], 5});
@@ -69,7 +69,7 @@ TEST(WeightedAverage, IsTheWeightedAverageAtEveryPoint) {
     const Box box = random_box(stream, inputs);
     weighted_average(a, b, wa, wb, box, average);
     expect_all_leaves_are_reached(average, box, 0, box);
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < 1000; ++i) {
       const std::vector<double> x = random_point(stream, box);
       const Prediction pa = predict(a, x), pb = predict(b, x);
       const auto mean = [&](double va, double vb) { return (va * wa + vb * wb) / (wa + wb); };
@@ -191,6 +191,24 @@ TEST(BestLeaf, OfAConstantIsTheCentre) {
   EXPECT_EQ(best_leaf(tree, {{-1}, {1}}).at[0], 0.625);
   EXPECT_EQ(best_leaf(tree, {{-1}, {1}}).value, 2);
   EXPECT_EQ(best_leaf(tree, {{-1}, {0.25}}).at[0], -0.375) << "only the part in the box counts";
+}
+
+TEST(DropUnused, KeepsTheTreeAndNothingElse) {
+  for (std::uint64_t trial = 0; trial < 1000; ++trial) {
+    Stream stream = stream_of(trial);
+    Tree tree = random_tree(stream, {2, kLeaves[trial % 2], 6});
+    const Box box = random_box(stream, 2);
+    prune(tree, box, 1 + stream.below(6));
+    const Tree before = tree;
+    drop_unused(tree);
+    const std::size_t leaves = leaves_of(before).size();
+    ASSERT_EQ(tree.nodes.size(), 2 * leaves - 1);
+    ASSERT_EQ(tree.models.size(), tree.leaf == LeafModel::linear ? leaves * model_width(2) : 0);
+    for (int i = 0; i < 20; ++i) {
+      const std::vector<double> x = random_point(stream, box);
+      ASSERT_EQ(predict(tree, x), predict(before, x)) << "trial " << trial;
+    }
+  }
 }
 
 TEST(CountLeaves, CountsThem) {
