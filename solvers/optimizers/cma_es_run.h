@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "solvers/optimizers/cma_es_distribution.h"
+#include "solvers/optimizers/cma_es_learning_rates.h"
+
+namespace coppice {
+
+/// What a run of CMA-ES is begun with.
+struct CmaRunSettings {
+  std::size_t population = 0;
+  double sigma = 0;
+  bool active = true;
+  bool separable = false;
+  double tolerance = 0;  ///< of values: a run ends when they have varied less for a while
+};
+
+/// One run from one start, without noise or restarts: ranks what it is told, updates the distribution, and
+/// notices when going on makes no sense.
+class CmaRun {
+ public:
+  CmaRun(const CmaRunSettings& settings, std::vector<double> mean);
+
+  const CmaDistribution& distribution() const { return distribution_; }
+  const CmaRunSettings& settings() const { return settings_; }
+  std::size_t population() const { return rates_.population; }
+  const CmaLearningRates* learning_rates() const { return learning_ ? &*learning_ : nullptr; }
+  std::int64_t generation() const { return generation_; }
+  /// Points (row after row) of the next generation.
+  const std::vector<double>& sample(Stream stream);
+  /// Values of the points, the larger the better; `best`: the best value of the whole search so far;
+  /// `injected`: a point to take the worst one's place (elitism), or none.
+  void update(std::span<const double> values, double best, std::span<const double> injected);
+  /// From now on learning rates adapt to noise (of a full covariance), and no value ends the run.
+  void expect_noise();
+  /// Why it ended; empty while it goes on.
+  const std::string& stop_reason() const { return stop_reason_; }
+
+  void save(Archive& archive) const;
+  void load(Archive& archive);
+
+ private:
+  void check_stop(std::span<const double> values, double best);
+
+  CmaRunSettings settings_;
+  CmaRates rates_;
+  CmaDistribution distribution_;
+  std::optional<CmaLearningRates> learning_;
+  bool noisy_ = false;
+  std::int64_t generation_ = 0;
+  std::vector<double> steps_, points_;
+  std::vector<std::uint32_t> order_;
+  std::deque<double> recent_;  ///< best value of each of the last generations
+  std::string stop_reason_;
+};
+
+/// Ranks, best first: equal values in order, NaN after every number.
+std::vector<std::uint32_t> ranked(std::span<const double> values);
+
+}  // namespace coppice
