@@ -45,7 +45,8 @@ const Component<Optimizer, CmaEs> kComponent(
     "cma_es", "Covariance matrix adaptation evolution strategy, with restarts and an answer to noise.",
     "Hansen, arXiv 1604.00772; Nomura et al., GECCO 2023 (learning rates); Auger and Hansen, CEC 2005 "
     "(IPOP); "
-    "Hansen, GECCO 2009 (BIPOP)");
+    "Hansen, GECCO 2009 (BIPOP)",
+    2);
 }  // namespace
 
 }  // namespace coppice

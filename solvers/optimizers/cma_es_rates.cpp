@@ -8,6 +8,10 @@
 namespace coppice {
 namespace {
 
+/// Both learning rates of the covariance beside the tutorial's, which aim at robustness: 5 to 11 % fewer
+/// evaluations on ellipsoids (docs/optimizers.md).
+constexpr double kFaster = 1.25;
+
 /// ln((lambda + 1)/2) - ln i, scaled: the positive weights to the sum 1, the negative ones by Eq. 53.
 void set_weights(CmaRates& rates, double n, bool active) {
   const double middle = elementary::log((static_cast<double>(rates.population) + 1) / 2);
@@ -23,9 +27,9 @@ void set_weights(CmaRates& rates, double n, bool active) {
   for (double& w : rates.weights) {
     if (w > 0) w /= positive;
   }
-  rates.c_1 = 2 / ((n + 1.3) * (n + 1.3) + rates.mu_eff);
-  rates.c_mu = std::min(
-      1 - rates.c_1, 2 * (0.25 + rates.mu_eff + 1 / rates.mu_eff - 2) / ((n + 2) * (n + 2) + rates.mu_eff));
+  rates.c_1 = kFaster * 2 / ((n + 1.3) * (n + 1.3) + rates.mu_eff);
+  rates.c_mu = std::min(1 - rates.c_1, kFaster * 2 * (0.25 + rates.mu_eff + 1 / rates.mu_eff - 2) /
+                                           ((n + 2) * (n + 2) + rates.mu_eff));
   const double scale = std::min({1 + rates.c_1 / rates.c_mu, 1 + 2 * negative_mu_eff / (rates.mu_eff + 2),
                                  (1 - rates.c_1 - rates.c_mu) / (n * rates.c_mu)});
   for (double& w : rates.weights) {
