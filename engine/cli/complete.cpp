@@ -80,6 +80,9 @@ std::string add_values(const ArgumentInfo& info, const Words& before, std::set<s
     case Completes::problem:
       for (const std::string& name : catalogue.names("problem")) candidates.insert(name);
       return {};
+    case Completes::exporter:
+      for (const std::string& name : catalogue.names("exporter")) candidates.insert(name);
+      return {};
     case Completes::interface:
       for (const std::string& name : catalogue.interfaces()) candidates.insert(name);
       return {};

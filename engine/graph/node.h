@@ -115,6 +115,8 @@ class Node : public NodeOptions {
   /// True when it takes all replicates of a node where it has none of its own, but one sweep point only
   /// (train's samples).
   virtual bool gathers_replicates(std::string_view) const { return false; }
+  /// Components that it uses besides those inside its element; their versions enter its key (export).
+  virtual std::vector<const ComponentInfo*> uses() const { return {}; }
   /// True when its files show the labels and replicates of its inputs, which then enter its key. Only for
   /// nodes that make nothing for others (table): renaming a node must not change what is computed from it.
   virtual bool shows_labels() const { return false; }

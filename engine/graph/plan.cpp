@@ -182,6 +182,8 @@ void compute_keys(Plan& plan, Diagnostics& diagnostics) {
     auto& [text, family] = known->second;
     if (is_new) {
       add_component(text, "node", Node::kInterface, *node.resolved, files, diagnostics);
+      for (const ComponentInfo* used : node.node->uses())
+        add_line(text, "node." + used->interface, fmt::format("{}/{}", used->name, used->version));
       family = content_hash(text);
     }
     node.parameters_text = text;

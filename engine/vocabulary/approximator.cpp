@@ -21,6 +21,10 @@ void Function::predict_batch(const Matrix& x, Matrix& y) const {
   }
 }
 
+FunctionModel Function::exported() const {
+  throw std::invalid_argument("is made of a function that is no constant, linear function or forest");
+}
+
 void save_function(const MadeFunction& function, Archive& archive) {
   archive.put("component", to_xml(function.resolved));
   const Archive::Scope scope(archive, "arrays");

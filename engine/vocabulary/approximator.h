@@ -10,6 +10,7 @@
 #include "engine/vocabulary/archive.h"
 #include "engine/vocabulary/matrix.h"
 #include "engine/vocabulary/parallel.h"
+#include "engine/vocabulary/policy_model.h"
 #include "engine/vocabulary/random.h"
 #include "engine/vocabulary/space.h"
 #include "registry/component.h"
@@ -54,6 +55,9 @@ class Function {
 
   /// What people want to know of it: names and numbers ("leaves", 812; "depth", 14).
   virtual std::vector<std::pair<std::string, double>> facts() const { return {}; }
+
+  /// What predict() computes, for exports. Throws as Policy::exported.
+  virtual FunctionModel exported() const;
 
  protected:
   /// Throws std::logic_error when predict_batch is given tables of other sizes than the function's.

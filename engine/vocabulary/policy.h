@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/vocabulary/archive.h"
+#include "engine/vocabulary/policy_model.h"
 #include "engine/vocabulary/random.h"
 #include "engine/vocabulary/space.h"
 #include "registry/component.h"
@@ -43,6 +44,10 @@ class Policy {
 
   /// What people want to know of a learned policy: names and numbers ("leaves", 812; "depth", 14).
   virtual std::vector<std::pair<std::string, double>> facts() const { return {}; }
+
+  /// What act() computes, for exports; called after prepare. Throws std::invalid_argument saying why it is no
+  /// model of numbers (a sentence without its subject, "draws at random").
+  virtual PolicyModel exported() const;
 };
 
 /// A policy with the resolved element that, with its arrays, makes it again.

@@ -26,6 +26,7 @@ class ConstantFunction : public Function {
     best.value = value_.front();
     return best;
   }
+  FunctionModel exported() const override { return ConstantModel{value_}; }
   void save(Archive& archive) const override {
     archive.put("inputs", std::vector<std::int64_t>{static_cast<std::int64_t>(inputs_)});
     archive.put("value", value_);

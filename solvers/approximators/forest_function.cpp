@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "solvers/approximators/forest_model.h"
 #include "solvers/approximators/maximize.h"
 
 namespace coppice {
@@ -51,6 +52,10 @@ std::vector<std::pair<std::string, double>> ForestFunction::facts() const {
           {"depth", static_cast<double>(deepest)},
           {"visits", static_cast<double>(visits)},
           {"leaves", static_cast<double>(forest_.leaves())}};
+}
+
+FunctionModel ForestFunction::exported() const {
+  return exported_forest(forest_);
 }
 
 namespace {

@@ -23,6 +23,8 @@ class ForestFunction : public Function {
   void load(Archive& archive) override { forest_ = Forest::load(archive); }
   std::vector<std::pair<std::string, double>> facts() const override;
 
+  FunctionModel exported() const override;
+
   const Forest& forest() const { return forest_; }
   static Parameters<ForestFunction> parameters() { return {}; }
 

@@ -36,6 +36,7 @@ class LinearFunction : public Function {
     }
     return best;
   }
+  FunctionModel exported() const override { return LinearModel{.slopes = slopes_, .bias = bias_}; }
   void save(Archive& archive) const override {
     archive.put("slopes", slopes_);
     archive.put("bias", bias_);

@@ -37,6 +37,10 @@ class ConstantPolicy : public Policy {
     chosen = action_;
   }
 
+  PolicyModel exported() const override {
+    return {action_.id, ConstantModel{{action_.values.begin(), action_.values.end()}}};
+  }
+
   static Parameters<ConstantPolicy> parameters() {
     return Parameters<ConstantPolicy>()
         .add("action", &ConstantPolicy::action, "", "Which action, counted from 0.", at_least(0))

@@ -18,6 +18,7 @@ class FittedPolicy : public Policy {
   void save(Archive& archive) const override { function->save(archive); }
   void load(Archive& archive) override { function.object->load(archive); }
   std::vector<std::pair<std::string, double>> facts() const override { return function->facts(); }
+  PolicyModel exported() const override { return {0, function->exported()}; }
 
   static Parameters<FittedPolicy> parameters();
 

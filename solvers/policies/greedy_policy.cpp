@@ -27,6 +27,12 @@ void GreedyPolicy::act(std::span<const double> state, std::span<double>, const D
   clamp_in_place(action, actions_);
 }
 
+PolicyModel GreedyPolicy::exported() const {
+  throw std::invalid_argument(
+      "searches its value function for the best action in every state; learn with <fpf>, which fits a forest "
+      "to those actions");
+}
+
 Parameters<GreedyPolicy> GreedyPolicy::parameters() {
   Parameters<GreedyPolicy> parameters;
   parameters.component("function", &GreedyPolicy::function, "Value of each state and action.", true);

@@ -19,6 +19,7 @@ class GreedyPolicy : public Policy {
   void save(Archive& archive) const override { function->save(archive); }
   void load(Archive& archive) override { function.object->load(archive); }
   std::vector<std::pair<std::string, double>> facts() const override { return function->facts(); }
+  PolicyModel exported() const override;
 
   static Parameters<GreedyPolicy> parameters();
 

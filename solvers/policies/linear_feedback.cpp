@@ -36,6 +36,7 @@ class LinearFeedback : public Policy {
           offset.size(), axes));
     }
     offset_ = offset.empty() ? std::vector<double>(axes, 0.0) : offset;
+    for (double& value : offset_) value += 0.0;  // makes 0 of -0: u - f and u + -f are then equal to the bit
   }
 
   void act(std::span<const double> state, std::span<double>, const Draws&, Action& chosen) const override {
@@ -47,6 +48,12 @@ class LinearFeedback : public Policy {
       chosen.values[a] = offset_[a] - feedback;
     }
     clamp_in_place(chosen, actions_);
+  }
+
+  PolicyModel exported() const override {
+    LinearModel linear{.slopes = gains, .bias = offset_, .bias_last = true};
+    for (double& slope : linear.slopes) slope = -slope;
+    return {action, std::move(linear)};
   }
 
   static Parameters<LinearFeedback> parameters() {

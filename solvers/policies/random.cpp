@@ -31,6 +31,8 @@ class RandomPolicy : public Policy {
     }
   }
 
+  PolicyModel exported() const override { throw std::invalid_argument("draws its actions at random"); }
+
   static Parameters<RandomPolicy> parameters() { return {}; }
 
  private:
