@@ -8,7 +8,8 @@ build="g++ cmake ninja-build pkg-config git
   libeigen3-dev libtinyxml2-dev libfmt-dev nlohmann-json3-dev libcli11-dev
   librandom123-dev libsleef-dev libxxhash-dev libsqlite3-dev"
 test="libgtest-dev libgmock-dev libxml2-utils"
-all="clang clang-tidy clang-format libclang-rt-14-dev"
+all="clang clang-tidy clang-format libclang-rt-14-dev
+  g++-aarch64-linux-gnu qemu-user graphviz"
 bench="libbenchmark-dev"
 npm="nodejs npm"
 

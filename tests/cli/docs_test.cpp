@@ -7,8 +7,8 @@
 
 // Every command that the pages for users show is executed: lines "$ command" of ```console blocks, one page
 // in one folder, and the examples of the commands' help. What a page shows as output must come out; a line
-// with "..." stands for anything. On docs/your-problem.md the program knows the problem of that page, and the
-// page's other files are there.
+// with "..." stands for anything. On docs/your-problem.md and docs/exports.md the program knows the problem of
+// the first, and the files of both are there.
 
 namespace coppice {
 namespace {
@@ -48,7 +48,7 @@ struct Home {
   std::string program = runner_program();
   explicit Home(const fs::path& page = {}) {
     fs::copy(kSource / "configs", folder / "configs", fs::copy_options::recursive);
-    if (page.filename() == "your-problem.md") {
+    if (page.filename() == "your-problem.md" || page.filename() == "exports.md") {
       program = contributing_program();
       fs::copy(your_problem_folder(), folder.path(), fs::copy_options::recursive);
     }

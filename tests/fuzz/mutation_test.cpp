@@ -243,9 +243,35 @@ TEST_P(PolicyMutations, AreRefused) {
     const std::string bytes = mutator.mutated(whole);
     EXPECT_EQ(accepts_policy(bytes), bytes == whole);
   }
-  for (std::size_t length = 0; length < whole.size(); ++length) {
+  for (std::size_t length = 0; length < whole.size() && !testing::Test::HasFailure(); ++length) {
     EXPECT_FALSE(accepts_policy(whole.substr(0, length)));
   }
+}
+
+/// No bit is without meaning: all are tried.
+TEST_P(PolicyMutations, OfAnyBitAreRefused) {
+  const std::string whole = learned(GetParam());
+  ASSERT_GT(2 * 8 * whole.size(), 100'000U) << "both kinds of leaves together";
+  std::string bytes = whole;
+  for (std::size_t bit = 0; bit < 8 * whole.size() && !testing::Test::HasFailure(); ++bit) {
+    bytes[bit / 8] = static_cast<char>(bytes[bit / 8] ^ (1 << bit % 8));
+    EXPECT_FALSE(accepts_policy(bytes)) << "bit " << bit;
+    bytes[bit / 8] = whole[bit / 8];
+  }
+}
+
+/// What is read and written again is the same file, to the bit.
+TEST_P(PolicyMutations, AreTheOnlyChanges) {
+  const std::string whole = learned(GetParam());
+  const TemporaryFolder folder;
+  PolicyFile file = parse_policy_file(whole, "fuzz.policy");
+  write_policy_file(folder / "first.policy", file);
+  EXPECT_EQ(TemporaryFolder::read(folder / "first.policy"), whole);
+  const MadePolicy policy = make_policy(file);
+  file.arrays = Archive();
+  policy->save(file.arrays);
+  write_policy_file(folder / "second.policy", file);
+  EXPECT_EQ(TemporaryFolder::read(folder / "second.policy"), whole);
 }
 
 /// Behind the checksum: what a faulty or hostile writer could have made.

@@ -14,6 +14,10 @@ std::string contributing_program() {
   return COPPICE_CONTRIBUTING_RUNNER;
 }
 
+std::string compiler_program() {
+  return COPPICE_COMPILER;
+}
+
 std::filesystem::path your_problem_folder() {
   return COPPICE_YOUR_PROBLEM;
 }
