@@ -27,9 +27,8 @@ struct LinearModel {
 
 /// Trees, equally many for each output.
 struct ForestModel {
-  /// A split leads to node `child` of its tree where x[index], rounded up to single precision, is not above
-  /// `value`, else to the node after that (a NaN is not above). Without a child it is a leaf: of `value`, or
-  /// with the linear model number `index` of its tree.
+  /// A split leads to the node after `child` of its tree where x[index] > `value`, else (also for NaN) to
+  /// `child`. Without a child it is a leaf: of `value`, or with the linear model number `index` of its tree.
   struct Node {
     float value = 0;
     std::uint32_t index = 0;
@@ -52,9 +51,12 @@ struct ForestModel {
 
   std::size_t inputs = 0;
   bool linear_leaves = false;
-  /// Given: m is a trimmed mean. The trees' values, each linear one held in its own range, are sorted, so
-  /// many left out on each side, and the mean is that of the others, summed from the lowest; NaN when one of
-  /// the values is.
+  /// Given, and not 0: m is the mean of the trees' values, each linear one held in its own range, without the
+  /// n lowest and the n highest. With the n-th lowest of them, a, and the n-th highest, b: a where they are
+  /// equal; else (s + p a + q b) / (trees - 2 n), where s sums the values between a and b (0 for the others),
+  /// p is the number of those that are not above a, and q of those that are not below b, each less n. The sum
+  /// is in the trees' order, with n > 6 from the lowest value. NaN when the sum of all values is. 0: m is the
+  /// values' mean.
   std::optional<std::size_t> trimmed;
   std::vector<Output> outputs;
 

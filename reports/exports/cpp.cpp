@@ -170,6 +170,10 @@ class CppExporter : public Exporter {
  public:
   std::string extension() const override { return "h"; }
   std::string write(const ExportedPolicy& policy) const override {
+    if (identifiers({{policy.name, "", 0, 0}}).front() != policy.name) {
+      throw std::invalid_argument(
+          fmt::format("'{}' has a meaning of its own in C++: give the export another name", policy.name));
+    }
     std::string guard = policy.name;
     for (char& c : guard) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
     const Space& states = policy.spaces.states;

@@ -213,18 +213,33 @@ inline double value(std::size_t output, const double* x, const float* rounded) n
 )";
 
 inline constexpr std::string_view kCppTrimmed = R"(
-/// The mean of the values that are left without the kTrimmed lowest and highest; NaN when one of them is.
+/// The mean of the values that are left without the kTrimmed lowest and highest; NaN when one of them is. Values
+/// that equal the last one left out stay as often as that leaves them.
 inline double trimmed_mean(double* values) noexcept {
+  double sum_of_all = 0;
+  for (std::size_t i = 0; i < kTrees; ++i) sum_of_all += values[i];
+  if (std::isnan(sum_of_all)) return sum_of_all;
+  const double left = static_cast<double>(kTrees - 2 * kTrimmed);
+  if (kTrimmed == 0) return sum_of_all / left;
+  double sorted[kTrees];
   for (std::size_t i = 0; i < kTrees; ++i) {
-    const double value = values[i];
-    if (std::isnan(value)) return value;
     std::size_t place = i;
-    for (; place > 0 && value < values[place - 1]; --place) values[place] = values[place - 1];
-    values[place] = value;
+    for (; place > 0 && values[i] < sorted[place - 1]; --place) sorted[place] = sorted[place - 1];
+    sorted[place] = values[i];
   }
+  const double low = sorted[kTrimmed == 0 ? 0 : kTrimmed - 1];
+  const double high = sorted[kTrees - (kTrimmed == 0 ? 1 : kTrimmed)];
+  if (low == high) return low;
   double sum = 0;
-  for (std::size_t i = kTrimmed; i < kTrees - kTrimmed; ++i) sum += values[i];
-  return sum / static_cast<double>(kTrees - 2 * kTrimmed);
+  double lows = -static_cast<double>(kTrimmed);
+  double highs = lows;
+  for (std::size_t i = 0; i < kTrees; ++i) {
+    const double value = kTrimmed > 6 ? sorted[i] : values[i];  // the order that the sum has in the policy
+    sum += value > low && value < high ? value : 0.0;
+    lows += value <= low ? 1 : 0;
+    highs += value >= high ? 1 : 0;
+  }
+  return (sum + product(lows, low) + product(highs, high)) / left;
 }
 )";
 

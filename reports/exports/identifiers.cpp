@@ -81,6 +81,7 @@ bool is_taken(const std::string& name) {
                                         "static",
                                         "static_assert",
                                         "static_cast",
+                                        "std",
                                         "struct",
                                         "switch",
                                         "template",

@@ -49,9 +49,16 @@ function forest(model, output, x) {
 }
 
 function trimmedMean(values, cut) {
-  if (values.some(Number.isNaN)) return NaN;
-  const kept = [...values].sort((a, b) => a - b).slice(cut, values.length - cut);
-  return sum(kept) / kept.length;
+  const all = sum(values), left = values.length - 2 * cut;
+  if (Number.isNaN(all)) return NaN;
+  if (cut === 0) return all / left;
+  const sorted = [...values].sort((a, b) => a - b);
+  const low = sorted[cut - 1], high = sorted[values.length - cut];
+  if (low === high) return low;
+  const between = sum((cut > 6 ? sorted : values).map((value) => (value > low && value < high ? value : 0)));
+  const lows = values.filter((value) => value <= low).length - cut;
+  const highs = values.filter((value) => value >= high).length - cut;
+  return (between + lows * low + highs * high) / left;
 }
 
 /** The function's outputs at x. */

@@ -78,6 +78,7 @@ inline std::vector<TestPolicy> test_policies() {
       fitted("pwc", "<extra_trees trees=\"25\"/>"),
       fitted("pwl", "<extra_trees trees=\"10\" leaves=\"pwl\"/>"),
       fitted("trimmed_pwc", "<extra_trees trees=\"12\" aggregation=\"trimmed_mean\"/>", 500),
+      fitted("trimmed_many", "<extra_trees trees=\"70\" aggregation=\"trimmed_mean\"/>", 100),
       fitted("trimmed_pwl", "<extra_trees trees=\"12\" leaves=\"pwl\" aggregation=\"trimmed_mean\"/>", 500),
       fitted("tree", "<regression_tree/>"),
       fitted("leaf", "<regression_tree/>", 1),
