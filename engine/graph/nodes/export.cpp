@@ -23,7 +23,9 @@ struct ExportNode : Node {
   std::vector<std::string> makes() const override { return {"export"}; }
   bool random() const override { return false; }
   std::vector<const ComponentInfo*> uses() const override {
-    return {Catalogue::instance().find(Exporter::kInterface, to)};
+    const ComponentInfo* exporter = Catalogue::instance().find(Exporter::kInterface, to);
+    if (exporter == nullptr) return {};
+    return {exporter};
   }
 
   void check() const {
