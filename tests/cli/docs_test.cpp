@@ -7,8 +7,8 @@
 
 // Every command that the pages for users show is executed: lines "$ command" of ```console blocks, one page
 // in one folder, and the examples of the commands' help. What a page shows as output must come out; a line
-// with "..." stands for anything. On docs/your-problem.md and docs/exports.md the program knows the problem of
-// the first, and the files of both are there.
+// with "..." stands for anything. On docs/your-problem.md and docs/exports.md the program knows the problem
+// of the first, and the files of both are there.
 
 namespace coppice {
 namespace {
