@@ -9,8 +9,8 @@ namespace coppice {
 namespace {
 
 constexpr std::size_t kAbreast = 8;
-constexpr std::size_t kMaxPoints = 256;
-constexpr std::size_t kNumbers = 4096;      // of the points that are looked at together
+constexpr std::size_t kMaxPoints = 2048;
+constexpr std::size_t kNumbers = 16384;     // of the points that are looked at together
 constexpr std::size_t kAllNumbers = 16384;  // of their predictions by all trees
 static_assert(kAbreast * (kMaxTreeInputs + 1) <= kNumbers);
 
