@@ -6,7 +6,7 @@ set -eu
 
 build="g++ cmake ninja-build pkg-config git
   libeigen3-dev libtinyxml2-dev libfmt-dev nlohmann-json3-dev libcli11-dev
-  librandom123-dev libsleef-dev libxxhash-dev libsqlite3-dev"
+  librandom123-dev libsleef-dev libxxhash-dev libsqlite3-dev libnlopt-dev"
 test="libgtest-dev libgmock-dev libxml2-utils"
 all="clang clang-tidy clang-format libclang-rt-14-dev
   g++-aarch64-linux-gnu qemu-user graphviz"

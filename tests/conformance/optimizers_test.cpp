@@ -13,11 +13,11 @@ class Optimizers : public testing::TestWithParam<std::string> {
   const Sub<Optimizer> optimizer_ = make_for_golden<Optimizer>(GetParam());
 };
 
-/// A box of 1 to 4 sides of different sizes, a guess or none, a budget.
+/// A box of 2 to 5 sides of different sizes, a guess or none, a budget.
 SearchTask random_task(std::uint64_t number) {
   const Draws draws = Draws(2017, "optimizers", 0).scenario(number);
   SearchTask task;
-  const std::uint64_t n = 1 + draws.below("n", 4);
+  const std::uint64_t n = 2 + draws.below("n", 4);
   for (std::uint32_t i = 0; i < n; ++i) {
     const double low = draws.normal("low", 0, 10, i);
     const double width = elementary::exp(draws.uniform("width", -6, 6, i));
