@@ -45,6 +45,7 @@ Language make_language() {
       {"approximator", "Learns a function from samples."},
       {"function", "A learned or given function of several variables."},
       {"exporter", "A format that policies are exported in (`policy export --to`, `<export to=\"\"/>`)."},
+      {"objective", "A function to be made large by an optimizer."},
       {"optimizer", "Looks for the best parameters by trying them (black-box optimization)."},
       {"solver", "Learns a policy for a problem."}};
   language.root = converted(control_elements().front());

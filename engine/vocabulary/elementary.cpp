@@ -34,6 +34,9 @@ double log1p(double x) {
 double pow(double x, double y) {
   return Sleef_cinz_powd1_u10purec(x, y);
 }
+double erfc(double x) {
+  return Sleef_cinz_erfcd1_u15purec(x);
+}
 }  // namespace elementary
 
 double normalize_angle(double angle) {

@@ -15,6 +15,7 @@ double exp(double x);
 double log(double x);
 double log1p(double x);
 double pow(double x, double y);
+double erfc(double x);  ///< error below 1.5 ulp
 }  // namespace elementary
 
 /// The angle in [-pi, pi) that differs from `angle` by whole turns.
