@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "engine/vocabulary/objective.h"
 #include "tests/support/make.h"
 

@@ -131,7 +131,7 @@ class Tuning {
 /// what the optimizer sees. Makes the policy with the best numbers.
 struct OptimizeNode : Node {
   Reference problem, policy;
-  std::vector<std::string> tuned;
+  std::vector<std::string> free;
   std::vector<double> low, high;
   std::int64_t budget = 0;
   std::int64_t episodes = 1;
@@ -185,7 +185,7 @@ struct OptimizeNode : Node {
         .reference("problem", &This::problem, "problem", "Where the policy acts.")
         .reference("policy", &This::policy, "policy",
                    "The policy, configured in a policy node; the search begins at its numbers.")
-        .require("parameters", &This::tuned, "",
+        .require("parameters", &This::free, "",
                  "Which of the policy's parameters are tuned: numbers, or lists of numbers.")
         .add("low", &This::low, "",
              "Lower limits in SI units: one for each number that is tuned, or one for all; empty: as "
@@ -218,7 +218,7 @@ struct OptimizeNode : Node {
           "parameters to tune",
           node.id));
     }
-    return {node.element.children.front(), tuned, low, high};
+    return {node.element.children.front(), free, low, high};
   }
 
   SearchTask task(const TunedPolicy& tuned, const NodeContext& context) const {
