@@ -70,7 +70,7 @@ struct CompareNode : Node {
   static Parameters<CompareNode> parameters() {
     using This = CompareNode;
     return node_parameters<This>()
-        .references("of", &This::of, "timing", "Evaluations to compare; or fits, for their metrics.")
+        .references("of", &This::of, "score", "Evaluations to compare; or fits, for their metrics.")
         .add("by", &This::by, "",
              "What tells apart what is compared: columns of sweeps, problem, policy, node (the evaluation's "
              "id).")

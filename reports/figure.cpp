@@ -105,7 +105,7 @@ struct FigureNode : Node {
   static Source source_of(const InputNode& node) {
     if (coppice::makes(node, "progress")) return Source::learning;
     if (coppice::makes(node, "dataset")) return Source::datasets;
-    if (coppice::makes(node, "evaluation") || coppice::makes(node, "scores")) return Source::metrics;
+    if (coppice::makes(node, "score")) return Source::metrics;
     throw std::invalid_argument(
         fmt::format("'{}' (<{}>) neither learns nor evaluates, and is no dataset", node.id, node.kind));
   }

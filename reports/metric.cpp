@@ -72,7 +72,7 @@ std::string metric_doc(Metric metric) {
 }
 
 void require_metric(const std::vector<InputNode>& nodes, Metric metric) {
-  const std::string artifact = source(metric).of_fit ? "scores" : "evaluation";
+  const std::string artifact = source(metric).of_fit ? "fit" : "evaluation";
   for (const InputNode& node : nodes) {
     if (std::find(node.makes.begin(), node.makes.end(), artifact) != node.makes.end()) continue;
     throw std::invalid_argument(fmt::format("'{}' is of {}, and '{}' (<{}>) makes none", source(metric).name,

@@ -57,7 +57,7 @@ struct TableNode : Node {
   static Parameters<TableNode> parameters() {
     using This = TableNode;
     return node_parameters<This>()
-        .references("of", &This::of, "timing", "Evaluations to summarize; or fits, for their metrics.")
+        .references("of", &This::of, "score", "Evaluations to summarize; or fits, for their metrics.")
         .add("rows", &This::rows, "",
              "What tells the rows apart: columns of sweeps, problem, policy, node (the evaluation's id).")
         .add("columns", &This::columns, "", "What tells the columns apart, likewise.")

@@ -23,19 +23,25 @@ constexpr const char* kConfig = R"(<experiment coppice="1" name="renamed" seed="
   <select id="i_best" problem="a_car" policies="c_lqr, h_tree, d_old" episodes="4" horizon="20"/>
   <collect id="j_more" problem="a_car" policy="i_best" episodes="3" horizon="20" seed_label="more"/>
   <train id="k_next" problem="a_car" samples="j_more"><fqi iterations="1"/></train>
-  <evaluate id="l_test" problem="a_car" policies="b_any, h_tree, i_best" episodes="4" horizon="20"/>
+  <evaluate id="l_test" problem="a_car" policies="b_any, h_tree, i_best, p_tune" episodes="4" horizon="20"/>
   <table id="m_all" of="l_test" rows="policy, trees" metric="cost"/>
   <compare id="n_pair" of="l_test" by="policy, trees" metric="return"/>
   <figure id="o_line" of="h_tree" by="trees" y="mean_target"/>
+  <optimize id="p_tune" problem="a_car" policy="c_lqr" parameters="gains" low="0" high="3" budget="20" horizon="20">
+    <cross_entropy/>
+  </optimize>
+  <predict id="q_said" function="g_fit" samples="e_log"/>
+  <sample id="r_drawn" samples="20"><sine/></sample>
+  <export id="s_ship" policy="p_tune" to="cpp"/>
   <timings id="timing_p" of="l_test" rows="policy, trees"/>
 </experiment>
 )";
 constexpr const char* kLogged =
     "episode,step,s_position,s_speed,action_id,a_acceleration,reward,n_position,n_speed,terminal\n"
     "0,0,1,0,0,0.5,-1.25,1,0.025,0\n0,1,0.5,0.025,0,-1,-2,1.00125,-0.025,0\n";
-const std::vector<std::string> kIds = {"a_car", "b_any",  "c_lqr",  "d_old",   "e_log",  "f_seen",
-                                       "g_fit", "h_tree", "i_best", "j_more",  "k_next", "l_test",
-                                       "m_all", "n_pair", "o_line", "timing_p"};
+const std::vector<std::string> kIds = {"a_car",  "b_any",  "c_lqr",  "d_old",   "e_log",  "f_seen",  "g_fit",
+                                       "h_tree", "i_best", "j_more", "k_next",  "l_test", "m_all",   "n_pair",
+                                       "o_line", "p_tune", "q_said", "r_drawn", "s_ship", "timing_p"};
 
 std::string replaced_all(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())

@@ -21,7 +21,7 @@ class CompareTest : public ::testing::Test {
             const std::string& variant = "HA") {
     InputNode& node = context.given["of"].emplace_back();
     node.id = "scores";
-    node.makes = {"evaluation", "timing"};
+    node.makes = {"evaluation", "score", "timing"};
     node.replicate = replicate;
     node.labels = {{"variant", variant}, {"policy", policy}};
     node.streams = {"evaluate " + std::to_string(replicate.value_or(0))};

@@ -19,6 +19,7 @@ class FigureTest : public ::testing::Test {
     InputNode& node = context.given["of"].emplace_back();
     node.id = "n";
     node.makes = {artifact, "timing"};
+    if (artifact == "evaluation") node.makes.push_back("score");
     node.replicate = replicate;
     node.labels = {{"variant", variant}};
     node.folder = context.folder() / std::to_string(context.given["of"].size());

@@ -31,7 +31,7 @@ class TableTest : public ::testing::Test {
     for (const Evaluation& made : evaluations) {
       InputNode& node = nodes.emplace_back();
       node.id = "scores";
-      node.makes = {"evaluation", "timing"};
+      node.makes = {"evaluation", "score", "timing"};
       node.replicate = made.replicate;
       node.training = made.training;
       node.labels = {{"problem", "car"}, {"policy", made.policy}};
@@ -69,7 +69,7 @@ TEST_F(TableTest, SummarizesFitsOnTheirTestSets) {
   for (int r = 0; r < 2; ++r) {
     InputNode& node = context.given["of"].emplace_back();
     node.id = "forest";
-    node.makes = {"function", "scores", "timing"};
+    node.makes = {"function", "fit", "score", "timing"};
     node.replicate = r;
     node.folder = context.folder() / std::to_string(r);
     std::filesystem::create_directory(node.folder);

@@ -49,7 +49,7 @@ struct EvaluateNode : Node {
   std::optional<double> discount;
   bool returns = true;
 
-  std::vector<std::string> makes() const override { return {"evaluation", "timing"}; }
+  std::vector<std::string> makes() const override { return {"evaluation", "score", "timing"}; }
   std::vector<std::string> labelled_tables() const override { return {std::string(kEvaluationFile)}; }
 
   void check(const NodeContext& context) const override {

@@ -57,7 +57,7 @@ struct FitNode : Node {
   std::string output;
   Sub<Approximator> approximator;
 
-  std::vector<std::string> makes() const override { return {"function", "scores", "timing"}; }
+  std::vector<std::string> makes() const override { return {"function", "fit", "score", "timing"}; }
   std::vector<std::string> labelled_tables() const override { return {std::string(kScoresFile)}; }
   bool gathers_replicates(std::string_view parameter) const override {
     return parameter == "samples" || parameter == "test";

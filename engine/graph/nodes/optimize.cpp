@@ -41,7 +41,7 @@ class Tuning {
     } catch (const std::runtime_error&) {  // a checkpoint that cannot be read is no loss but of time
       search_ = optimizer.start(task_);
       history_ = {};
-      evaluations_ = not_finite_ = next_row_ = 0;
+      evaluations_ = not_finite_ = last_row_ = next_row_ = 0;
     }
   }
 
