@@ -93,7 +93,7 @@ TEST_F(Renaming, OfEveryNodeChangesNoByteButTheNamesInTables) {
   for (const auto& [file, bytes] : results(folder_ / "out/renamed")) expected[renamed(file)] = renamed(bytes);
   EXPECT_EQ(std::count_if(expected.begin(), expected.end(),
                           [](const auto& file) { return file.first.ends_with(".policy"); }),
-            6);
+            7);
   const std::string config = renamed(kConfig);
   ASSERT_FALSE(contains(config, "i_best"));
   folder_.write("renamed.xml", config);
