@@ -18,7 +18,18 @@ namespace coppice::cli {
 class Console;
 
 /// What the shell may offer where an argument's value stands.
-enum class Completes { nothing, config, file, folder, component, problem, exporter, interface, node, command };
+enum class Completes {
+  nothing,
+  config,
+  file,
+  folder,
+  component,
+  problem,
+  exporter,
+  interface,
+  node,
+  command
+};
 
 /// A positional argument ("CONFIG") or an option ("--out"), as parsing, help, completion and the manual see
 /// it.
