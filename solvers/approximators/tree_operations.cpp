@@ -233,7 +233,8 @@ void drop_unused(Tree& tree) {
     TreeNode node = tree.nodes[i];
     if (tree.leaf == LeafModel::linear && tree.is_leaf(static_cast<std::int32_t>(i))) {
       const double* model = tree.model(static_cast<std::int32_t>(i));
-      node.value = static_cast<double>(models.size() / static_cast<std::size_t>(width));
+      const std::size_t row = models.size() / static_cast<std::size_t>(width);
+      node.value = static_cast<double>(row);
       models.insert(models.end(), model, model + width);
     }
     node.child = place[node.child];
