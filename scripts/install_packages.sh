@@ -1,7 +1,7 @@
 #!/bin/sh
 # Installs the Debian packages that a set of targets needs and that are missing; says which. Does nothing, and needs no
 # network, when none is missing.
-#   scripts/install_packages.sh build|test|test-all|bench
+#   scripts/install_packages.sh build|test|test-all|bench|bench-trees|bench-optimizers
 set -eu
 
 build="g++ cmake ninja-build pkg-config git
@@ -18,7 +18,9 @@ case "${1:-}" in
   test) wanted="$build $test" ;;
   test-all) wanted="$build $test $all $bench" ;;
   bench) wanted="$build $bench" ;;
-  *) echo "usage: $0 build|test|test-all|bench" >&2; exit 2 ;;
+  bench-trees) wanted="$build $bench python3-sklearn" ;;  # beside the peers of the same name
+  bench-optimizers) wanted="$build $bench libpagmo-dev" ;;
+  *) echo "usage: $0 build|test|test-all|bench|bench-trees|bench-optimizers" >&2; exit 2 ;;
 esac
 # A npm of other origin, which Debian's would replace, serves as well.
 if [ "$1" = test-all ] && ! command -v npm >/dev/null; then wanted="$wanted $npm"; fi

@@ -6,14 +6,7 @@
 set -eu
 cd "$(dirname "$0")/../.."
 
-scripts/install_packages.sh bench >&2
-if ! dpkg-query -W -f '${Status}' python3-sklearn 2>/dev/null | grep -q '^install ok installed$'; then
-  echo "packages: installing python3-sklearn" >&2
-  as_root="env DEBIAN_FRONTEND=noninteractive"
-  [ "$(id -u)" -eq 0 ] || as_root="sudo $as_root"
-  $as_root apt-get update -qq || true
-  $as_root apt-get install -y -qq --no-install-recommends python3-sklearn >/dev/null
-fi
+scripts/install_packages.sh bench-trees >&2
 scripts/build.sh bench "$(nproc)" tree_driver >&2
 # One thread, also in numpy.
 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 exec /usr/bin/python3 tests/benchmarks/compare_trees.py build/tree_driver "$@"

@@ -7,15 +7,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 runner=$1
 work=$2
-mkdir -p "$work"
-
-# Packages stay installed while the lock file is the same; then no network is needed.
-if ! cmp -s "$here/package-lock.json" "$work/installed.json"; then
-  rm -f "$work/installed.json"
-  cp "$here/package.json" "$here/package-lock.json" "$work/"
-  (cd "$work" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error)
-  cp "$here/package-lock.json" "$work/installed.json"
-fi
+"$here/../support/npm_install.sh" "$here" "$work"
 cp "$here/check.mjs" "$work/"
 
 rm -rf "$work/out"
