@@ -18,7 +18,7 @@ case "${1:-}" in
   test) wanted="$build $test" ;;
   test-all) wanted="$build $test $all $bench" ;;
   bench) wanted="$build $bench" ;;
-  bench-trees) wanted="$build $bench python3-sklearn" ;;  # beside the peers of the same name
+  bench-trees) wanted="$build $bench python3-sklearn" ;;
   bench-optimizers) wanted="$build $bench libpagmo-dev" ;;
   *) echo "usage: $0 build|test|test-all|bench|bench-trees|bench-optimizers" >&2; exit 2 ;;
 esac

@@ -11,4 +11,4 @@ rm -f "$work/installed.json"
 cp "$folder/package.json" "$folder/package-lock.json" "$work/"
 cd "$work"
 npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
-cp "$work/package-lock.json" "$work/installed.json"
+cp package-lock.json installed.json
