@@ -185,7 +185,8 @@ TEST_F(Runs, StopWhenToldToAndGoOnLater) {
 
 TEST_F(Runs, StopAtOnceTheSecondTime) {
   const Ended ended = script(
-      "$RUNNER long.xml episodes:=50000000 --progress none > paths & pid=$!\nsleep 0.5\n"
+      "$RUNNER long.xml episodes:=50000000 --progress json 2> log > paths & pid=$!\n"
+      "until grep -q started log; do sleep 0.02; done\n"
       "kill -INT $pid; kill -INT $pid; wait $pid; echo status $?");
   EXPECT_EQ(ended.out, "status 3\n") << ended.err;
 }
