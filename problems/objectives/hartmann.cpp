@@ -3,7 +3,7 @@
 #include <array>
 
 #include "engine/vocabulary/elementary.h"
-#include "engine/vocabulary/objective.h"
+#include "problems/objectives/noisy_function.h"
 
 namespace coppice {
 namespace {
@@ -33,21 +33,16 @@ constexpr Bumps<6> kHartmann6{{{{10, 3, 17, 3.5, 1.7, 8},
 
 /// Minus Hartmann's function: a sum of four bumps in the unit cube, and noise.
 template <std::size_t N>
-class HartmannFunction : public ObjectiveFunction {
+class HartmannFunction : public NoisyFunction {
  public:
-  HartmannFunction(const Bumps<N>& bumps, double noise) : bumps_(bumps), noise_(noise) {
+  HartmannFunction(const Bumps<N>& bumps, double noise) : NoisyFunction(noise), bumps_(bumps) {
     for (std::size_t i = 0; i < N; ++i) box_.push_back({fmt::format("x{}", i), "", 0, 1});
   }
   const Space& box() const override { return box_; }
-  double evaluate(std::span<const double> x, const Draws& draws) const override {
-    return value(x) + (noisy() ? draws.normal("noise", 0, noise_) : 0);
-  }
-  bool noisy() const override { return noise_ > 0; }
-  std::optional<double> true_value(std::span<const double> x) const override { return value(x); }
   std::optional<double> optimum() const override { return bumps_.optimum; }
 
- private:
-  double value(std::span<const double> x) const {
+ protected:
+  double value(std::span<const double> x) const override {
     double sum = 0;
     for (std::size_t b = 0; b < 4; ++b) {
       double square = 0;
@@ -59,8 +54,9 @@ class HartmannFunction : public ObjectiveFunction {
     }
     return sum;
   }
+
+ private:
   const Bumps<N>& bumps_;
-  double noise_;
   Space box_;
 };
 
@@ -71,10 +67,7 @@ struct Hartmann : Objective {
     if constexpr (N == 3) return std::make_unique<HartmannFunction<3>>(kHartmann3, noise);
     if constexpr (N == 6) return std::make_unique<HartmannFunction<6>>(kHartmann6, noise);
   }
-  static Parameters<Hartmann> parameters() {
-    return Parameters<Hartmann>().add("noise", &Hartmann::noise, "", "Deviation of an evaluation.",
-                                      at_least(0));
-  }
+  static Parameters<Hartmann> parameters() { return NoisyFunction::with_noise(Parameters<Hartmann>()); }
 };
 
 const char* const kSource = "Dixon and Szego, Towards Global Optimization 2 (1978)";
