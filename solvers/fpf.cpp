@@ -115,7 +115,7 @@ std::unique_ptr<Training> Fpf::start(const TrainingInputs& inputs) const {
 
 const Component<Solver, Fpf> kComponent("fpf",
                                         "Fitted policy forests: a forest that says the best action directly.",
-                                        "L. Hofer's thesis (2017), Algorithm 15");
+                                        "L. Hofer's thesis (2017), Algorithm 15", 2);
 
 }  // namespace
 }  // namespace coppice

@@ -41,7 +41,7 @@ std::unique_ptr<Training> Fqi::start(const TrainingInputs& inputs) const {
 
 const Component<Solver, Fqi> kComponent(
     "fqi", "Fitted Q iteration; its policy looks for the best action in each state.",
-    "Ernst, Geurts and Wehenkel, JMLR 6 (2005); L. Hofer's thesis (2017), Algorithms 13 and 14");
+    "Ernst, Geurts and Wehenkel, JMLR 6 (2005); L. Hofer's thesis (2017), Algorithms 13 and 14", 2);
 
 }  // namespace
 }  // namespace coppice

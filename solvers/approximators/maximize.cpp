@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "solvers/approximators/line_maximum.h"
 #include "solvers/approximators/tree_operations.h"
 #include "solvers/approximators/tree_region.h"
 
@@ -246,6 +247,11 @@ Maximum maximize(const Forest& forest, std::span<const double> prefix, const Spa
                     box.size(), prefix.size()));
   }
   if (forest.aggregation() == Aggregation::trimmed_mean) check_trimmed(forest, how);
+  const bool is_exact = how.method == Maximization::Method::exact;
+  if (is_exact && box.size() == 1 && forest.aggregation() == Aggregation::mean) {
+    thread_local LineMaximum line;
+    return line.over(forest, prefix, box[0]);
+  }
   thread_local Box bounds;
   thread_local std::vector<Tree> projected;
   bounds.low.resize(box.size());
@@ -257,7 +263,7 @@ Maximum maximize(const Forest& forest, std::span<const double> prefix, const Spa
   if (projected.size() < forest.trees()) projected.resize(forest.trees());
   const std::span<Tree> trees(projected.data(), forest.trees());
   for (std::size_t i = 0; i < trees.size(); ++i) project(forest.tree(0, i), prefix, bounds, trees[i]);
-  if (how.method == Maximization::Method::exact) {
+  if (is_exact) {
     thread_local ExactMaximum exact;
     return exact.over(trees, forest.aggregation(), bounds);
   }

@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "tests/solvers/approximators/random_trees.h"
 
@@ -91,6 +95,49 @@ TEST(Maximize, ExactIsTheLargestOverAllCellsAndIsTakenWhereItSays) {
       ASSERT_TRUE(best.at[i] >= test.axes[i].low && best.at[i] <= test.axes[i].high) << "trial " << trial;
     }
     ASSERT_NEAR(predicted(forest, test, best), best.value, 1e-12) << "trial " << trial;
+  }
+}
+
+/// As above, with a hundred thousand breaks and numbers whose sums are rounded: no prediction at an end of a
+/// piece exceeds the maximum, and the maximum is a prediction.
+TEST(Maximize, ExactAlongALineIsTheLargestPredictionAtTheEndsOfItsPieces) {
+  for (const LeafModel leaf : {LeafModel::constant, LeafModel::linear}) {
+    Stream stream = Draws(2017, "line", 0).stream("trees", leaf == LeafModel::linear ? 1 : 0);
+    std::vector<Tree> trees(40);
+    for (Tree& tree : trees) {
+      tree = random_tree(stream, {2, leaf, 14});
+      for (TreeNode& node : tree.nodes) {
+        if (node.child == &node - tree.nodes.data()) {
+          if (leaf == LeafModel::constant) node.value = stream.uniform(-1, 1);
+        } else {
+          node.value = static_cast<float>(stream.uniform(-1, 1));
+        }
+      }
+      for (double& number : tree.models) number *= stream.uniform(0.9, 1.1);
+      for (std::size_t row = 0; row < tree.models.size(); row += model_width(2)) {
+        if (tree.models[row + 3] > tree.models[row + 4])
+          std::swap(tree.models[row + 3], tree.models[row + 4]);
+      }
+    }
+    const Forest forest = forest_of(trees);
+    const auto value = [&](double state, double action) {
+      double y = 0;
+      forest.predict(std::array{state, action}, {&y, 1});
+      return y;
+    };
+    for (const double state : {-0.9, -0.3, 0.1, 0.77}) {
+      const Maximum best = maximize(forest, {&state, 1}, {{"a", "", -0.95, 0.9}}, kExact);
+      EXPECT_EQ(best.value, value(state, best.at[0]));
+      double most = std::max(value(state, -0.95), value(state, 0.9));
+      for (const Tree& tree : trees) {
+        for (const TreeNode& node : tree.nodes) {
+          if (node.feature != 1 || node.value < -0.95 || node.value >= 0.9) continue;
+          const double above = std::nextafter(node.value, std::numeric_limits<double>::infinity());
+          most = std::max({most, value(state, node.value), value(state, above)});
+        }
+      }
+      EXPECT_NEAR(best.value, most, 1e-12) << state;
+    }
   }
 }
 
