@@ -46,7 +46,7 @@ const Component<Optimizer, CmaEs> kComponent(
     "Hansen, arXiv 1604.00772; Nomura et al., GECCO 2023 (learning rates); Auger and Hansen, CEC 2005 "
     "(IPOP); "
     "Hansen, GECCO 2009 (BIPOP)",
-    2);
+    3);
 }  // namespace
 
 }  // namespace coppice

@@ -51,6 +51,15 @@ void BoxMap::into(std::span<const double> coordinates, std::span<double> point) 
   }
 }
 
+bool BoxMap::contains(std::span<const double> coordinates) const {
+  for (std::size_t i = 0; i < box_.size(); ++i) {
+    const bool scaled = has_width(box_[i]);
+    const double low = scaled ? 0 : box_[i].low, high = scaled ? 1 : box_[i].high;
+    if (coordinates[i] < low || coordinates[i] > high) return false;
+  }
+  return true;
+}
+
 std::vector<double> BoxMap::start(std::span<const double> guess) const {
   std::vector<double> point(box_.size());
   for (std::size_t i = 0; i < box_.size(); ++i) {

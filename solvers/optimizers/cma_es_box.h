@@ -19,6 +19,8 @@ class BoxMap {
   /// Coordinates of a point of the box.
   std::vector<double> inside_out(std::span<const double> point) const;
   /// The point of the box for any coordinates; never outside, whatever rounding does.
+  /// Whether nothing is mirrored.
+  bool contains(std::span<const double> coordinates) const;
   void into(std::span<const double> coordinates, std::span<double> point) const;
   /// `guess` moved into the box; where there is none, the centre, or the finite limit, or 0.
   std::vector<double> start(std::span<const double> guess) const;

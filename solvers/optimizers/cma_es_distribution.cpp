@@ -56,16 +56,19 @@ void CmaDistribution::apply_factor(std::span<const double> step, std::span<doubl
   }
 }
 
-void CmaDistribution::sample(Stream& stream, std::size_t count, std::vector<double>& steps,
-                             std::vector<double>& points) const {
+void CmaDistribution::sample(Stream& stream, const BoxMap& box, int attempts, std::size_t count,
+                             std::vector<double>& steps, std::vector<double>& points) const {
   const std::size_t n = dimension();
   steps.resize(count * n);
   points.resize(count * n);
-  for (double& z : steps) z = stream.normal();
   for (std::size_t k = 0; k < count; ++k) {
-    const std::span<double> point(points.data() + k * n, n);
-    apply_factor({steps.data() + k * n, n}, point);
-    for (std::size_t i = 0; i < n; ++i) point[i] = mean_[i] + sigma_ * point[i];
+    const std::span<double> step(steps.data() + k * n, n), point(points.data() + k * n, n);
+    for (int attempt = 0; attempt < attempts; ++attempt) {
+      for (double& z : step) z = stream.normal();
+      apply_factor(step, point);
+      for (std::size_t i = 0; i < n; ++i) point[i] = mean_[i] + sigma_ * point[i];
+      if (box.contains(point)) break;
+    }
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "engine/vocabulary/archive.h"
 #include "engine/vocabulary/random.h"
+#include "solvers/optimizers/cma_es_box.h"
 #include "solvers/optimizers/cma_es_rates.h"
 
 namespace coppice {
@@ -29,8 +30,9 @@ class CmaDistribution {
   double largest_deviation() const;
   double condition() const;
 
-  /// Draws `count` samples: `steps` gets the z (one row of dimension() after the other), `points` the points.
-  void sample(Stream& stream, std::size_t count, std::vector<double>& steps,
+  /// Draws `count` samples, each again up to `attempts` times until it lies in the box: `steps` gets the z
+  /// (one row of dimension() after the other), `points` the points.
+  void sample(Stream& stream, const BoxMap& box, int attempts, std::size_t count, std::vector<double>& steps,
               std::vector<double>& points) const;
   /// The z of a point.
   void standardize(std::span<const double> point, std::span<double> step) const;

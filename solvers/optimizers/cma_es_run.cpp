@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 namespace coppice {
@@ -13,6 +14,13 @@ constexpr double kSmallestStep = 1e-12;  // of the first sigma
 constexpr double kLargestStep = 1e6;     // of the first sigma
 /// A run that has settled this closely beside a better value will not reach it.
 constexpr double kHopeless = 1e-2;
+/// What is drawn outside the box is drawn again (tutorial, B.5) while the distribution is wide, since there
+/// mirrored points tell nothing of their surroundings; when it is narrow they do, and reach optima on the
+/// border sooner.
+constexpr int kAttempts = 10;
+constexpr double kWide = 0.1;  // of the first sigma
+/// The deviation falls so far in about n generations only about one optimum, not among many.
+constexpr double kConverging = 0.1;
 
 }  // namespace
 
@@ -30,8 +38,9 @@ CmaRun::CmaRun(const CmaRunSettings& settings, std::vector<double> mean)
       rates_(cma_rates(mean.size(), settings.population, settings.active, settings.separable)),
       distribution_(std::move(mean), settings.sigma, settings.separable) {}
 
-const std::vector<double>& CmaRun::sample(Stream stream) {
-  distribution_.sample(stream, rates_.population, steps_, points_);
+const std::vector<double>& CmaRun::sample(Stream stream, const BoxMap& box) {
+  const bool wide = distribution_.largest_deviation() > kWide * settings_.sigma;
+  distribution_.sample(stream, box, wide ? kAttempts : 1, rates_.population, steps_, points_);
   return points_;
 }
 
@@ -73,23 +82,49 @@ void CmaRun::expect_noise() {
 
 void CmaRun::check_stop(std::span<const double> values, double best) {
   const double deviation = distribution_.largest_deviation();
-  if (deviation < kSmallestStep * settings_.sigma) stop_reason_ = "tolerance";
-  if (deviation > kLargestStep * settings_.sigma) stop_reason_ = "diverged";
-  if (distribution_.condition() > kMaxCondition) stop_reason_ = "condition";
-  if (noisy_) return;
-  const double first = values[order_.front()];
-  const auto n = static_cast<double>(distribution_.dimension());
-  const auto window =
-      10 + static_cast<std::size_t>(std::ceil(30 * n / static_cast<double>(rates_.population)));
+  const char* reason = "";
+  if (deviation < kSmallestStep * settings_.sigma) reason = "tolerance";
+  if (deviation > kLargestStep * settings_.sigma) reason = "diverged";
+  if (distribution_.condition() > kMaxCondition) reason = "condition";
+  if (!noisy_) {
+    const char* settled = check_values(values, best);
+    if (*settled != '\0') reason = settled;
+    if (has_chosen_its_optimum(deviation)) refine();
+  }
+  stop_reason_ = reason;
+}
+
+const char* CmaRun::check_values(std::span<const double> values, double best) {
+  const double first = values[order_.front()], worst = values[order_.back()];
+  const std::size_t window = 10 + generations_of(30);
   recent_.push_back(first);
   if (recent_.size() > window) recent_.pop_front();
-  if (recent_.size() < window) return;
+  if (recent_.size() < window) return "";
   const auto [low, high] = std::minmax_element(recent_.begin(), recent_.end());
-  const double range = *high - *low;
-  const double worst = values[order_.back()];
-  if (range <= settings_.tolerance && first - worst <= settings_.tolerance) stop_reason_ = "tolerance";
-  if (best - *high > 0 && std::max(range, first - worst) < kHopeless * (best - *high))
-    stop_reason_ = "worse optimum";
+  const double range = std::max(*high - *low, first - worst);
+  if (best - *high > 0 && range < kHopeless * (best - *high)) return "worse optimum";
+  return range <= settings_.tolerance ? "tolerance" : "";
+}
+
+/// The generations in which the run evaluates `times` n candidates.
+std::size_t CmaRun::generations_of(double times) const {
+  const auto n = static_cast<double>(distribution_.dimension());
+  return static_cast<std::size_t>(std::ceil(times * n / static_cast<double>(rates_.population)));
+}
+
+bool CmaRun::has_chosen_its_optimum(double deviation) {
+  if (rates_.population <= settings_.refining_population) return false;
+  const std::size_t window = std::max<std::size_t>(10, distribution_.dimension()) + generations_of(30);
+  deviations_.push_back(deviation);
+  if (deviations_.size() > window) deviations_.pop_front();
+  return deviations_.size() == window && deviation < kConverging * deviations_.front();
+}
+
+void CmaRun::refine() {
+  rates_ = cma_rates(distribution_.dimension(), settings_.refining_population, settings_.active,
+                     settings_.separable);
+  recent_.clear();
+  deviations_.clear();
 }
 
 void CmaRun::save(Archive& archive) const {
@@ -103,6 +138,8 @@ void CmaRun::save(Archive& archive) const {
   archive.put("steps", steps_);
   archive.put("points", points_);
   archive.put("recent", std::vector<double>(recent_.begin(), recent_.end()));
+  archive.put("deviations", std::vector<double>(deviations_.begin(), deviations_.end()));
+  archive.put("run_population", std::vector<std::int64_t>{static_cast<std::int64_t>(rates_.population)});
   archive.put("stop_reason", stop_reason_);
 }
 
@@ -119,6 +156,14 @@ void CmaRun::load(Archive& archive) {
   points_ = archive.get<std::vector<double>>("points");
   const auto& recent = archive.get<std::vector<double>>("recent");
   recent_.assign(recent.begin(), recent.end());
+  const auto& deviations = archive.get<std::vector<double>>("deviations");
+  deviations_.assign(deviations.begin(), deviations.end());
+  const std::int64_t population = archive.get<std::vector<std::int64_t>>("run_population").at(0);
+  if (population < 2) throw std::runtime_error("search: a population is damaged");
+  if (static_cast<std::size_t>(population) != rates_.population) {
+    rates_ = cma_rates(distribution_.dimension(), static_cast<std::size_t>(population), settings_.active,
+                       settings_.separable);
+  }
   stop_reason_ = archive.get<std::string>("stop_reason");
 }
 

@@ -15,6 +15,7 @@ namespace coppice {
 /// What a run of CMA-ES is begun with.
 struct CmaRunSettings {
   std::size_t population = 0;
+  std::size_t refining_population = 0;  ///< that a larger one shrinks to beside one optimum
   double sigma = 0;
   bool active = true;
   bool separable = false;
@@ -32,8 +33,8 @@ class CmaRun {
   std::size_t population() const { return rates_.population; }
   const CmaLearningRates* learning_rates() const { return learning_ ? &*learning_ : nullptr; }
   std::int64_t generation() const { return generation_; }
-  /// Points (row after row) of the next generation.
-  const std::vector<double>& sample(Stream stream);
+  /// Coordinates (row after row) of the next generation; some may lie outside the box.
+  const std::vector<double>& sample(Stream stream, const BoxMap& box);
   /// Values of the points, the larger the better; `best`: the best value of the whole search so far;
   /// `injected`: a point to take the worst one's place (elitism), or none.
   void update(std::span<const double> values, double best, std::span<const double> injected);
@@ -47,6 +48,10 @@ class CmaRun {
 
  private:
   void check_stop(std::span<const double> values, double best);
+  const char* check_values(std::span<const double> values, double best);
+  std::size_t generations_of(double times) const;
+  bool has_chosen_its_optimum(double deviation);
+  void refine();
 
   CmaRunSettings settings_;
   CmaRates rates_;
@@ -56,7 +61,8 @@ class CmaRun {
   std::int64_t generation_ = 0;
   std::vector<double> steps_, points_;
   std::vector<std::uint32_t> order_;
-  std::deque<double> recent_;  ///< best value of each of the last generations
+  std::deque<double> recent_;      ///< best value of each of the last generations
+  std::deque<double> deviations_;  ///< largest deviation before each of them
   std::string stop_reason_;
 };
 

@@ -43,8 +43,10 @@ CmaSearch::CmaSearch(const CmaEs& method, const SearchTask& task)
 
 CmaRunSettings CmaSearch::first_settings() const {
   const std::size_t n = dimension();
-  return {.population =
-              method_.population ? static_cast<std::size_t>(*method_.population) : default_population(n),
+  const std::size_t population =
+      method_.population ? static_cast<std::size_t>(*method_.population) : default_population(n);
+  return {.population = population,
+          .refining_population = population,
           .sigma = method_.sigma,
           .active = method_.active,
           .separable = separable(method_, n),
@@ -100,7 +102,7 @@ Candidates CmaSearch::next_generation(std::int64_t left) {
     return begin_choice(left);
   }
   const std::vector<double>& points =
-      run_->sample(task().draws.stream("cma_es", static_cast<std::uint64_t>(generation_)));
+      run_->sample(task().draws.stream("cma_es", static_cast<std::uint64_t>(generation_)), map_);
   const std::size_t n = dimension(), population = run_->population();
   const std::size_t repeated =
       testing_ && !run_->learning_rates() ? std::min(test_.repetitions(generation_), population) : 0;

@@ -1,5 +1,6 @@
 // The bars of docs/optimizers.md about CMA-ES, measured: cma_es_table [part] [seeds] [dimensions...]
-// Parts: exact, bounded, switch, rastrigin, noisy, overhead; all without arguments.
+// Parts: exact, bounded, switch, border, rastrigin, rastrigin_bounded, noisy, overhead; all without
+// arguments. Seeds: how many, or the first and the last ("1001-1051": seeds that no rate was chosen with).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,10 +35,10 @@ double now() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+/// The box is [-side, side]^n.
 Outcome run(CmaEs method, TestFunction function, std::size_t n, std::uint64_t seed, double budget,
-            bool bounded, bool noisy, double target) {
-  const double side = bounded ? 5 : kInfinity;
-  method.sigma = bounded ? 0.2 : 2;
+            double side, bool noisy, double target) {
+  method.sigma = std::isfinite(side) ? 0.2 : 2;
   SearchTask task;
   task.box.assign(n, {"x", "", -side, side});
   task.guess = function.guess();
@@ -94,8 +95,17 @@ double median(std::vector<double> values) {
 
 struct Options {
   std::string part = "all";
-  std::uint64_t seeds = 51;
+  std::uint64_t first = 1001, last = 1051;  ///< seeds
   std::vector<std::size_t> dimensions;
+  void read_seeds(const std::string& text) {
+    const std::size_t dash = text.find('-');
+    if (dash == std::string::npos) {
+      last = first + std::strtoull(text.c_str(), nullptr, 10) - 1;
+    } else {
+      first = std::strtoull(text.c_str(), nullptr, 10);
+      last = std::strtoull(text.c_str() + dash + 1, nullptr, 10);
+    }
+  }
   bool wants(const std::string& name) const { return part == "all" || part == name; }
   std::vector<std::size_t> sizes(std::vector<std::size_t> all) const {
     return dimensions.empty() ? all : dimensions;
@@ -108,45 +118,69 @@ const std::map<std::string, std::map<std::size_t, double>> kLibcmaes = {
     {"ellipsoid_rot", {{5, 1690}, {10, 4361}, {20, 12846}, {40, 43972}}},
     {"rosenbrock", {{5, 1788}, {10, 5443}, {20, 16866}, {40, 58600}}}};
 
+/// One row; `peer`: libcmaes's evaluations, 0 where there are none.
+void print_counts(const std::string& name, std::size_t n, const std::vector<double>& counts, double peer) {
+  const double middle = median(counts), upper = upper_bound(counts);
+  const auto solved = std::count_if(counts.begin(), counts.end(), [](double c) { return std::isfinite(c); });
+  fmt::print("{:14} {:3} {:8.0f} {:8.0f}", name, n, middle, upper);
+  if (peer > 0) fmt::print(" {:8.0f} {:6.3f} {:6.3f}", peer, middle / peer, upper / peer);
+  fmt::print(" {}/{}\n", solved, counts.size());
+  std::fflush(stdout);
+}
+
 void exact(const Options& options, bool bounded, bool noisy) {
   fmt::print("# to 1e-8, {}{}: median evaluations, upper 95 % bound, libcmaes, ratios, successes\n",
              bounded ? "in the box [-5, 5]^n" : "unbounded", noisy ? ", taken for noisy" : "");
-  double logarithms = 0, cells = 0;
+  double logarithms = 0, upper_logarithms = 0, cells = 0;
   for (const auto& [name, peers] : kLibcmaes) {
     for (const std::size_t n : options.sizes({5, 10, 20, 40})) {
       std::vector<double> counts;
-      for (std::uint64_t s = 1; s <= options.seeds; ++s) {
+      for (std::uint64_t s = options.first; s <= options.last; ++s) {
         counts.push_back(
-            run({}, {name, n, s}, n, s, 1e4 * static_cast<double>(n), bounded, noisy, 1e-8).evaluations);
+            run({}, {name, n, s}, n, s, 1e4 * static_cast<double>(n), bounded ? 5 : kInfinity, noisy, 1e-8)
+                .evaluations);
       }
-      const double middle = median(counts), upper = upper_bound(counts), peer = peers.at(n);
-      const auto solved =
-          std::count_if(counts.begin(), counts.end(), [](double c) { return std::isfinite(c); });
-      fmt::print("{:14} {:3} {:8.0f} {:8.0f} {:8.0f} {:6.3f} {:6.3f} {}/{}\n", name, n, middle, upper, peer,
-                 middle / peer, upper / peer, solved, counts.size());
-      std::fflush(stdout);
-      logarithms += std::log(middle / peer);
+      print_counts(name, n, counts, peers.at(n));
+      logarithms += std::log(median(counts) / peers.at(n));
+      upper_logarithms += std::log(upper_bound(counts) / peers.at(n));
       ++cells;
     }
   }
-  fmt::print("geometric mean of the ratios {:.3f}\n", std::exp(logarithms / cells));
+  fmt::print("geometric mean of the ratios {:.3f} {:.3f}\n", std::exp(logarithms / cells),
+             std::exp(upper_logarithms / cells));
 }
 
-void rastrigin(const Options& options) {
+void rastrigin(const Options& options, bool bounded) {
   fmt::print(
-      "# rotated Rastrigin, budget 1e4 n: successes, expected running time, median of the successes\n");
+      "# rotated Rastrigin, {}, budget 1e4 n: successes, expected running time, median of the successes\n",
+      bounded ? "in the box [-5, 5]^n" : "unbounded");
   for (const std::size_t n : options.sizes({5, 10, 20})) {
     double spent = 0;
     std::vector<double> counts;
-    for (std::uint64_t s = 1; s <= options.seeds; ++s) {
-      const Outcome o =
-          run({}, {"rastrigin_rot", n, s}, n, s, 1e4 * static_cast<double>(n), false, false, 1e-8);
+    for (std::uint64_t s = options.first; s <= options.last; ++s) {
+      const Outcome o = run({}, {"rastrigin_rot", n, s}, n, s, 1e4 * static_cast<double>(n),
+                            bounded ? 5 : kInfinity, false, 1e-8);
       spent += o.spent;
       if (std::isfinite(o.evaluations)) counts.push_back(o.evaluations);
     }
-    fmt::print("{:3} {}/{} ERT {:.3g} median {:.0f}\n", n, counts.size(), options.seeds,
+    fmt::print("{:3} {}/{} ERT {:.3g} median {:.0f}\n", n, counts.size(), options.last - options.first + 1,
                spent / static_cast<double>(counts.size()), counts.empty() ? 0 : median(counts));
     std::fflush(stdout);
+  }
+}
+
+void border(const Options& options) {
+  fmt::print("# sphere in the box [-1, 1]^n, about half of whose sides the optimum lies beyond: as above\n");
+  for (const std::size_t n : options.sizes({5, 10, 20, 40})) {
+    std::vector<double> counts;
+    for (std::uint64_t s = options.first; s <= options.last; ++s) {
+      TestFunction function("sphere", n, s);
+      std::vector<double> best = function.optimum();
+      for (double& x : best) x = std::clamp(x, -1.0, 1.0);
+      const double target = function.exact(best.data(), 1) + 1e-8;
+      counts.push_back(run({}, function, n, s, 1e4 * static_cast<double>(n), 1, false, target).evaluations);
+    }
+    print_counts("border", n, counts, 0);
   }
 }
 
@@ -156,9 +190,9 @@ void noisy(const Options& options) {
   for (const double budget : {100.0, 1000.0}) {
     for (const std::size_t n : options.sizes({5, 10, 20, 40})) {
       std::vector<double> values;
-      for (std::uint64_t s = 1; s <= options.seeds; ++s) {
+      for (std::uint64_t s = options.first; s <= options.last; ++s) {
         values.push_back(
-            run({}, {"sphere", n, s, 1}, n, s, budget * static_cast<double>(n), false, true, -kInfinity)
+            run({}, {"sphere", n, s, 1}, n, s, budget * static_cast<double>(n), kInfinity, true, -kInfinity)
                 .returned);
       }
       fmt::print("{:5}n {:3} {:9.4f} {:9.4f}\n", budget, n, median(values), upper_bound(values));
@@ -176,7 +210,7 @@ void overhead(const Options& options) {
       CmaEs method;
       method.noise = CmaEs::Noise::off;
       method.restarts = CmaEs::Restarts::none;
-      const Outcome o = run(method, {"sphere", n, s, 1}, n, s, 2e4, false, false, -kInfinity);
+      const Outcome o = run(method, {"sphere", n, s, 1}, n, s, 2e4, kInfinity, false, -kInfinity);
       least = std::min(least, 1e6 * o.seconds / o.spent);
     }
     fmt::print("{:3} {:.3f}\n", n, least);
@@ -191,12 +225,14 @@ int main(int argc, char** argv) {
   using namespace coppice::benchmark;
   Options options;
   if (argc > 1) options.part = argv[1];
-  if (argc > 2) options.seeds = std::strtoull(argv[2], nullptr, 10);
+  if (argc > 2) options.read_seeds(argv[2]);
   for (int i = 3; i < argc; ++i) options.dimensions.push_back(std::strtoull(argv[i], nullptr, 10));
   if (options.wants("exact")) exact(options, false, false);
   if (options.wants("bounded")) exact(options, true, false);
   if (options.wants("switch")) exact(options, false, true);
-  if (options.wants("rastrigin")) rastrigin(options);
+  if (options.wants("rastrigin")) rastrigin(options, false);
+  if (options.wants("rastrigin_bounded")) rastrigin(options, true);
+  if (options.wants("border")) border(options);
   if (options.wants("noisy")) noisy(options);
   if (options.wants("overhead")) overhead(options);
 }

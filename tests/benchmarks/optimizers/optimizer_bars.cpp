@@ -27,7 +27,7 @@ Outcome search_sphere(const Optimizer& optimizer, std::size_t n, std::uint64_t s
   SearchTask task;
   std::vector<double> optimum;
   for (std::uint32_t i = 0; i < n; ++i) {
-    task.box.push_back({"x" + std::to_string(i), "", -5, 5});
+    task.box.push_back({fmt::format("x{}", i), "", -5, 5});
     task.guess.push_back(draws.uniform("guess", -4, 4, i));
     optimum.push_back(draws.uniform("optimum", -2, 2, i));
   }

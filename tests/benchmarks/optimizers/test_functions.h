@@ -33,6 +33,7 @@ class TestFunction {
   }
 
   const std::vector<double>& guess() const { return guess_; }
+  const std::vector<double>& optimum() const { return optimum_; }
   double noisy(const double* x, std::size_t stride) {
     const double value = exact(x, stride);
     return noise_ > 0 ? value + noise_ * stream_.normal() : value;

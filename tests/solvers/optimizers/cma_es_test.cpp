@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "solvers/optimizers/cma_es_box.h"
 #include "solvers/optimizers/cma_es_distribution.h"
 #include "solvers/optimizers/cma_es_rates.h"
+#include "solvers/optimizers/cma_es_run.h"
 #include "solvers/optimizers/lower_triangle.h"
 #include "solvers/optimizers/rank_change_test.h"
 
@@ -92,6 +94,47 @@ TEST(BoxMap, MirrorsAtFiniteSidesAndLeavesInfiniteOnesAlone) {
   EXPECT_EQ(at(1.25, -7, 0), (std::vector<double>{2.5, -7, 2}));
   EXPECT_EQ(at(-0.25, 0, 1), (std::vector<double>{-2.5, 0, 1}));
   EXPECT_EQ(at(2.25, 0, 1), (std::vector<double>{-2.5, 0, 1}));
+}
+
+TEST(CmaDistribution, DrawsAgainWhatFallsOutsideTheBox) {
+  const BoxMap box({{"a", "", -5, 5}, {"b", "", -kInfinity, 0.1}});
+  const CmaDistribution distribution({0.9, 0}, 0.2, false);
+  const auto outside = [&](int attempts) {
+    Stream stream = Draws(1, "test", 0).stream("sample");
+    std::vector<double> steps, points;
+    distribution.sample(stream, box, attempts, 1000, steps, points);
+    int count = 0;
+    for (std::size_t k = 0; k < 1000; ++k) {
+      count += box.contains({points.data() + 2 * k, 2}) ? 0 : 1;
+      EXPECT_NEAR(points[2 * k], 0.9 + 0.2 * steps[2 * k], 1e-12);
+    }
+    return count;
+  };
+  EXPECT_NEAR(outside(1), 1000 * (1 - 0.6915 * 0.6915), 50);  // both must be below 0.5 deviations
+  EXPECT_NEAR(outside(3), 1000 * std::pow(1 - 0.6915 * 0.6915, 3), 35);
+  EXPECT_EQ(outside(100), 0);
+}
+
+/// The population at the end of `generations` of a run that began with 60.
+std::size_t population_after(int generations, const std::function<double(double)>& value) {
+  const BoxMap everywhere({{"a", "", -kInfinity, kInfinity}, {"b", "", -kInfinity, kInfinity}});
+  CmaRun run({.population = 60, .refining_population = 6, .sigma = 1, .tolerance = 0}, {3, -2});
+  for (int g = 0; g < generations && run.stop_reason().empty(); ++g) {
+    const std::vector<double> points =
+        run.sample(Draws(2, "test", 0).stream("sample", static_cast<std::uint64_t>(g)), everywhere);
+    std::vector<double> values;
+    for (std::size_t k = 0; k < run.population(); ++k) {
+      values.push_back(value(points[2 * k]) + value(points[2 * k + 1]));
+    }
+    run.update(values, -kInfinity, {});
+  }
+  return run.population();
+}
+
+TEST(CmaRun, GoesOnWithASmallPopulationOnceItConvergesToOneOptimum) {
+  EXPECT_EQ(population_after(40, [](double x) { return -x * x; }), 6u);
+  EXPECT_EQ(population_after(40, [](double x) { return x; }), 60u) << "while it travels";
+  EXPECT_EQ(population_after(5, [](double x) { return -x * x; }), 60u) << "too early to say";
 }
 
 TEST(RankChangeTest, NoticesChangedRanksAndAsksRarelyWhereNothingChanges) {
