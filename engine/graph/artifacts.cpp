@@ -74,6 +74,11 @@ std::shared_ptr<const Problem> load_problem(const InputNode& node) {
   return made_component<Problem>(node.element.children.front()).object;
 }
 
+Sub<Objective> load_objective(const InputNode& node) {
+  if (node.element.children.empty()) throw std::logic_error("node " + node.id + " has no objective");
+  return made_component<Objective>(node.element.children.front());
+}
+
 std::shared_ptr<const Spaces> load_spaces(const InputNode& node) {
   const std::shared_ptr<const Problem> problem = load_problem(node);
   return {problem, &problem->spaces()};
@@ -93,6 +98,16 @@ MadePolicy load_policy(const InputNode& node, const Problem& problem) {
   }
   if (policy) policy.object->prepare(problem.spaces(), problem.simulator());
   return policy;
+}
+
+void write_policy(const MadePolicy& policy, const Spaces& spaces, NodeContext& context) {
+  PolicyFile file{.writer = {},
+                  .provenance = context.key(),
+                  .spaces = spaces,
+                  .component = policy.resolved,
+                  .arrays = {}};
+  policy->save(file.arrays);
+  write_policy_file(context.folder() / kPolicyFile, file);
 }
 
 std::string common_origin(const InputNode& a, const InputNode& b) {

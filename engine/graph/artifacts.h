@@ -10,6 +10,7 @@
 #include "engine/graph/node.h"
 #include "engine/vocabulary/approximator.h"
 #include "engine/vocabulary/dataset.h"
+#include "engine/vocabulary/objective.h"
 #include "engine/vocabulary/policy.h"
 #include "engine/vocabulary/problem.h"
 
@@ -27,10 +28,17 @@ inline constexpr std::string_view kScoresFile = "scores.csv";  ///< of a fit
 inline constexpr std::string_view kReturnsFile = "returns.csv";
 inline constexpr std::string_view kProgressFile = "progress.csv";
 inline constexpr std::string_view kSelectionFile = "selection.csv";
-inline constexpr std::string_view kTableFile = "table.csv";  ///< of nodes that show tables
+inline constexpr std::string_view kSearchFile = "search.csv";              ///< of a search as a whole
+inline constexpr std::string_view kOptimumFile = "optimum.csv";            ///< what it found
+inline constexpr std::string_view kImprovementsFile = "improvements.csv";  ///< when it got better
+inline constexpr std::string_view kTargetsFile = "targets.csv";            ///< when it was good enough
+inline constexpr std::string_view kTableFile = "table.csv";                ///< of nodes that show tables
 
 /// The problem of a `problem` node, made from its element.
 std::shared_ptr<const Problem> load_problem(const InputNode& node);
+
+/// The test function's family of an `objective` node, likewise.
+Sub<Objective> load_objective(const InputNode& node);
 
 /// The spaces of the problem of a `problem` node.
 std::shared_ptr<const Spaces> load_spaces(const InputNode& node);
@@ -38,6 +46,9 @@ std::shared_ptr<const Spaces> load_spaces(const InputNode& node);
 /// The policy of a node that makes one (policy, train, select), prepared for the problem. While checking, a
 /// learned policy is not there yet: null, after a look at what is known of it.
 MadePolicy load_policy(const InputNode& node, const Problem& problem);
+
+/// Writes the policy that a node makes for a problem with these spaces.
+void write_policy(const MadePolicy& policy, const Spaces& spaces, NodeContext& context);
 
 /// Why two datasets say the same twice, as "come from the same draws (collect 0)"; empty when they do not, as
 /// far as is known.

@@ -7,9 +7,22 @@
 #include <stdexcept>
 
 #include "engine/graph/child.h"
+#include "engine/graph/run_folder.h"
 #include "registry/text.h"
 
 namespace coppice {
+namespace {
+
+/// Copies the files of a folder to another one, in place of what was there.
+void keep(const std::filesystem::path& from, const std::filesystem::path& to) {
+  coppice::remove_all(to);
+  make_folder(to);
+  for (const auto& file : std::filesystem::directory_iterator(from)) {
+    write_file(to / file.path().filename(), read_file(file.path()));
+  }
+}
+
+}  // namespace
 
 ResultRecord compute_node(const Plan& plan, std::size_t index, const std::filesystem::path& run_folder,
                           Store& store, TaskParallel& parallel,
@@ -21,6 +34,13 @@ ResultRecord compute_node(const Plan& plan, std::size_t index, const std::filesy
     watch(&context);
     node.node->run(context);
     context.write_timing();
+  } catch (const Unfinished& failure) {
+    watch(nullptr);
+    const std::filesystem::path kept = run_folder / kFailedFolder / node.folder;
+    keep(folder, kept);
+    store.abandon(folder);
+    throw std::runtime_error(
+        fmt::format("{}\nwhat it wrote until then is in {}", failure.what(), kept.string()));
   } catch (...) {
     watch(nullptr);
     store.abandon(folder);

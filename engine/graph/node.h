@@ -86,6 +86,13 @@ class Interrupted : public std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
+/// Thrown by run when it fails, but what it wrote to its folder until then is worth keeping: it is moved to
+/// where the user finds it, and the message says where.
+class Unfinished : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// A table with a row for each node that a reference parameter leads to, in their order.
 struct InputTable {
   std::string file;

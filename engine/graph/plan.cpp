@@ -116,7 +116,7 @@ std::string main_component(const PlannedNode& node) {
 
 void set_component(const Plan& plan, PlannedNode& node) {
   node.component = node.kind + main_component(node);
-  for (const char* artifact : {"problem", "policy"}) {
+  for (const char* artifact : {"problem", "objective", "policy"}) {
     for (const PlannedInput& input : node.inputs) {
       if (input.artifact != artifact || input.nodes.empty()) continue;
       node.component += main_component(plan.nodes[input.nodes.front()]);

@@ -82,14 +82,14 @@ std::map<std::string, std::string> units_of(const SweepPoints& sweep) {
   return units;
 }
 
-/// Sweep columns, quantities as numbers in SI units; then the ids of the problem and the policy that it makes
-/// or reads.
+/// Sweep columns, quantities as numbers in SI units; then the ids of the problem, the objective and the
+/// policy that it makes or reads.
 void label_node(PlannedNode& node, const Plan& plan) {
   node.labels = node.point;
   for (auto& [column, value] : node.labels) {
     if (node.units.contains(column)) value = number_text(parse_quantity(value)->value);
   }
-  for (const char* artifact : {"problem", "policy"}) {
+  for (const char* artifact : {"problem", "objective", "policy"}) {
     if (makes(node, artifact)) {
       node.labels.emplace_back(artifact, node.id);
       continue;

@@ -109,6 +109,7 @@ void RunFolder::lock() {
   }
   if (::ftruncate(lock_->descriptor(), 0) == 0) lock_->write(std::to_string(::getpid()));
   for (const char* part : {"", kHidden, "nodes", "tables", "figures"}) remove_temporaries(path_ / part);
+  coppice::remove_all(path_ / kFailedFolder);
 }
 
 /// Notes, before it is made, what is to be removed if this process is killed and the plan changes.

@@ -13,6 +13,9 @@
 
 namespace coppice {
 
+/// Folder of a run for what failed nodes wrote until they failed, in the last run.
+inline constexpr std::string_view kFailedFolder = "failed";
+
 /// Where a file of a result goes in the run folder: into the node's folder, or, when it is published, under
 /// the node's name among the others of its kind ("tables/<id>.csv", "tables/<id>.<column>=<value>.csv").
 std::string place_of_file(const PlannedNode& node, std::string_view file);

@@ -1,216 +1,149 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
 #include <stdexcept>
 
 #include "engine/data/table_file.h"
 #include "engine/graph/artifacts.h"
-#include "engine/graph/nodes/episodes.h"
-#include "engine/graph/nodes/progress_table.h"
-#include "engine/graph/nodes/tuned_policy.h"
-#include "engine/statistics/estimates.h"
-#include "engine/vocabulary/optimizer.h"
+#include "engine/graph/nodes/objective_target.h"
+#include "engine/graph/nodes/policy_target.h"
+#include "engine/graph/nodes/search_tables.h"
+#include "engine/graph/nodes/tuning.h"
 
 namespace coppice {
 namespace {
 
-enum class Criterion { returns, discounted_return };
-constexpr std::array<const char*, 2> kCriteria = {"return", "discounted_return"};
-constexpr std::string_view kOptimumFile = "optimum.csv";
-constexpr std::string_view kSearchFile = "search.csv";
-constexpr std::int64_t kMostAtOnce = 64;     // so that it shows progress and can stop
-constexpr std::int64_t kHistoryRows = 1000;  // about as many, however large the budget
-
-/// A search and its history, saved and resumed together.
-class Tuning {
- public:
-  using Evaluate = std::function<std::vector<double>(const Candidates&, std::int64_t evaluations)>;
-
-  Tuning(const Optimizer& optimizer, SearchTask task, NodeContext& context)
-      : task_(std::move(task)),
-        names_(optimizer.measures()),
-        context_(context),
-        search_(optimizer.start(task_)) {
-    std::optional<Archive> saved = context.checkpoint();
-    if (!saved) return;
-    try {
-      load(*saved);
-    } catch (const std::runtime_error&) {  // a checkpoint that cannot be read is no loss but of time
-      search_ = optimizer.start(task_);
-      history_ = {};
-      evaluations_ = not_finite_ = last_row_ = next_row_ = 0;
-    }
-  }
-
-  /// Throws Interrupted when the run should stop.
-  void run(const Evaluate& evaluate) {
-    CheckpointClock clock;
-    while (evaluations_ < task_.budget) {
-      const bool stop = context_.parallel().stop_requested();
-      if (stop || clock.due()) clock.save(context_, state());
-      if (stop) throw Interrupted();
-      const Candidates candidates = search_->ask(std::min(kMostAtOnce, task_.budget - evaluations_));
-      if (candidates.points.rows() == 0) break;
-      check(candidates);
-      const std::vector<double> values = evaluate(candidates, evaluations_);
-      not_finite_ += std::count_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
-      evaluations_ += static_cast<std::int64_t>(values.size());
-      search_->tell(values);
-      if (evaluations_ >= next_row_) add_row();
-      context_.progress(evaluations_, task_.budget);
-    }
-    if (evaluations_ > last_row_) add_row();
-  }
-
-  const Search& search() const { return *search_; }
-  Table history() const { return history_.table(); }
-  std::int64_t evaluations() const { return evaluations_; }
-  std::int64_t not_finite() const { return not_finite_; }
-
- private:
-  void check(const Candidates& candidates) const {
-    for (std::size_t i = 0; i < task_.box.size(); ++i) {
-      for (const double x : candidates.points.column(i)) {
-        if (x >= task_.box[i].low && x <= task_.box[i].high) continue;
-        throw std::logic_error(
-            fmt::format("a candidate has {} = {}, outside of its limits", task_.box[i].name, x));
-      }
-    }
-  }
-
-  void add_row() {
-    TrainingProgress row{evaluations_, task_.budget, {{"best_value", search_->best_value()}}};
-    const std::vector<double> values = search_->measures();
-    for (std::size_t i = 0; i < names_.size(); ++i) row.measures.emplace_back(names_[i], values[i]);
-    history_.add(row);
-    last_row_ = evaluations_;
-    next_row_ = evaluations_ + task_.budget / kHistoryRows;
-  }
-
-  Archive state() const {
-    Archive archive;
-    archive.put("counts", std::vector<std::int64_t>{evaluations_, not_finite_, last_row_, next_row_});
-    {
-      const Archive::Scope scope(archive, "search");
-      search_->save(archive);
-    }
-    const Archive::Scope scope(archive, "history");
-    history_.save(archive);
-    return archive;
-  }
-  void load(Archive& archive) {
-    const std::vector<std::int64_t> counts = archive.get<std::vector<std::int64_t>>("counts");
-    if (counts.size() != 4) throw std::runtime_error("not the counts of a search");
-    evaluations_ = counts[0];
-    not_finite_ = counts[1];
-    last_row_ = counts[2];
-    next_row_ = counts[3];
-    {
-      const Archive::Scope scope(archive, "search");
-      search_->load(archive);
-    }
-    const Archive::Scope scope(archive, "history");
-    history_.load(archive);
-  }
-
-  const SearchTask task_;
-  const std::vector<std::string> names_;
-  NodeContext& context_;
-  std::unique_ptr<Search> search_;
-  ProgressTable history_;
-  std::int64_t evaluations_ = 0;
-  std::int64_t not_finite_ = 0;  ///< values that were NaN or infinite
-  std::int64_t last_row_ = 0;    ///< evaluations when the history got its last row
-  std::int64_t next_row_ = 0;
-};
-
-/// Looks for the numbers of a configured policy with which it does best: the mean return of a few episodes is
-/// what the optimizer sees. Makes the policy with the best numbers.
+/// Looks for the numbers with which a configured policy does best, or a test function is largest.
 struct OptimizeNode : Node {
-  Reference problem, policy;
+  using Node::check;
+
+  Reference problem, policy, objective;
   std::vector<std::string> free;
-  std::vector<double> low, high;
+  std::vector<double> low, high, start_low, start_high;
+  std::vector<double> targets = {1e1, 1, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
+  std::optional<double> stop_gap;
   std::int64_t budget = 0;
   std::int64_t episodes = 1;
   std::optional<int> horizon;
   std::optional<double> discount;
   Criterion criterion = Criterion::returns;
-  bool common_scenarios = true;
-  bool noisy = true;
+  std::optional<bool> common_scenarios, noisy;
   Sub<Optimizer> optimizer;
 
-  std::vector<std::string> makes() const override { return {"policy", "progress", "timing"}; }
-  bool learns() const override { return true; }
-  std::vector<std::string> labelled_tables() const override {
-    return {std::string(kProgressFile), std::string(kOptimumFile), std::string(kSearchFile)};
+  std::vector<std::string> makes() const override {
+    if (of_objective()) return {"search", "progress", "timing"};
+    return {"policy", "search", "progress", "timing"};
   }
-  std::vector<std::string> progress_columns(const NodeContext&) const override {
-    std::vector<std::string> measures = {"best_value"};
-    for (const std::string& measure : optimizer->measures()) measures.push_back(measure);
-    return ProgressTable::column_names(measures);
+  bool learns() const override { return !of_objective(); }
+  std::vector<std::string> labelled_tables() const override {
+    std::vector<std::string> tables;
+    for (const std::string_view file : {kProgressFile, kOptimumFile, kSearchFile, kImprovementsFile})
+      tables.emplace_back(file);
+    if (of_objective()) tables.emplace_back(kTargetsFile);
+    return tables;
+  }
+  std::vector<std::string> progress_columns(const NodeContext& context) const override {
+    const bool known = of_objective() && target(context)->optimum();
+    return ProgressTable::column_names(Tuning::measures(*optimizer, known));
   }
   std::shared_ptr<const Spaces> spaces(const NodeContext& context) const override {
-    return load_spaces(context.inputs("problem").front());
+    return of_objective() ? nullptr : load_spaces(context.inputs("problem").front());
   }
 
+  void check() const {
+    if (!of_objective()) {
+      if (problem.id.empty() || policy.id.empty() || free.empty()) {
+        throw std::invalid_argument("give a problem, a policy and its parameters to tune, or an objective");
+      }
+      if (stop_gap) throw std::invalid_argument("stop_gap is of objectives, whose optimum is known");
+      return;
+    }
+    const PolicyTrial unused;
+    if (!problem.id.empty() || !policy.id.empty() || !free.empty() || episodes != unused.episodes ||
+        horizon || discount || criterion != unused.criterion) {
+      throw std::invalid_argument(
+          "an objective makes no use of problem, policy, parameters, episodes, horizon, discount, criterion");
+    }
+  }
   void check(const NodeContext& context) const override {
-    const auto target = load_problem(context.inputs("problem").front());
-    const TunedPolicy tuned = tuned_policy(context);
-    prepared(tuned, tuned.configured(), *target);
-    optimizer->start(task(tuned, context));
+    const auto sought = target(context);
+    if (stop_gap && !sought->optimum()) {
+      throw std::invalid_argument("stop_gap is of objectives whose optimum is known");
+    }
+    optimizer->start(task(*sought, context));
   }
 
   void run(NodeContext& context) const override {
-    const auto target = load_problem(context.inputs("problem").front());
-    const TunedPolicy tuned = tuned_policy(context);
-    Tuning tuning(*optimizer, task(tuned, context), context);
-    tuning.run([&](const Candidates& candidates, std::int64_t evaluations) {
-      return evaluate(candidates, evaluations, tuned, *target, context);
-    });
+    const auto sought = target(context);
+    const SearchTask search = task(*sought, context);
+    const TuningOptions options{common_scenarios.value_or(sought->has_scenarios()), stop_gap};
+    Tuning tuning(*optimizer, search, *sought, options, context);
+    tuning.run();
     context.count("evaluations", tuning.evaluations());
-    context.count("episodes", tuning.evaluations() * episodes);
-    const std::vector<double> best = tuning.search().best();
-    write_policy(prepared(tuned, best, *target), target->spaces(), context);
-    write_table(context.folder() / kProgressFile, tuning.history());
-    write_table(context.folder() / kOptimumFile, optimum(tuned, best));
-    write_table(context.folder() / kSearchFile, summary(tuning));
+    tuning.write_history();
+    const std::vector<double> best = tuning.best();
+    sought->write(best, tuning.evaluations(), context);
+    write_table(context.folder() / kOptimumFile, optimum_table(search, best));
+    Table summary = tuning.summary();
+    if (of_objective()) {
+      add_truth(summary, *sought, best);
+      write_table(context.folder() / kTargetsFile,
+                  targets_table(targets, tuning.improvements(), sought->optimum()));
+    }
+    write_table(context.folder() / kSearchFile, summary);
   }
 
   static Parameters<OptimizeNode> parameters() {
     using This = OptimizeNode;
     return node_parameters<This>()
-        .reference("problem", &This::problem, "problem", "Where the policy acts.")
+        .reference("problem", &This::problem, "problem", "Where the policy acts.", false)
         .reference("policy", &This::policy, "policy",
-                   "The policy, configured in a policy node; the search begins at its numbers.")
-        .require("parameters", &This::free, "",
-                 "Which of the policy's parameters are tuned: numbers, or lists of numbers.")
+                   "The policy, configured in a policy node; the search begins at its numbers.", false)
+        .add("parameters", &This::free, "",
+             "Which of the policy's parameters are tuned: numbers, or lists of numbers.")
+        .reference("objective", &This::objective, "objective",
+                   "Instead of a policy: a function to be made large. Each replicate draws its own.", false)
         .add("low", &This::low, "",
              "Lower limits in SI units: one for each number that is tuned, or one for all; empty: as "
              "declared.")
         .add("high", &This::high, "", "Upper limits, likewise.")
+        .add("start_low", &This::start_low, "",
+             "Lower limits of where the search begins, likewise: it is drawn uniformly; empty: at the "
+             "policy's "
+             "numbers, or where the optimizer begins.")
+        .add("start_high", &This::start_high, "", "Upper limits of that.")
         .require("budget", &This::budget, "", "Evaluations in all, repeated ones included.", at_least(1))
+        .add("targets", &This::targets, "",
+             "Of objectives: gaps to the optimum; targets.csv says when they were reached.", at_least(0))
+        .automatic("stop_gap", &This::stop_gap, "",
+                   "Of objectives: the search ends when a point as near to the optimum was tried; auto: it "
+                   "goes on.",
+                   at_least(0))
         .add("episodes", &This::episodes, "", "Episodes of an evaluation.", between(1, 1000000))
         .automatic("horizon", &This::horizon, "", "Steps of an episode at most; auto: the problem's.",
                    at_least(1))
         .automatic("discount", &This::discount, "",
                    "Discount of a step, for the discounted return; auto: the problem's.", between(0, 1))
-        .choice("criterion", &This::criterion, {kCriteria.begin(), kCriteria.end()},
+        .choice("criterion", &This::criterion, criterion_names(),
                 "What is made large: its mean over the episodes.")
-        .add("common_scenarios", &This::common_scenarios, "",
-             "Whether candidates that the optimizer compares meet the same scenarios (common random "
-             "numbers); else "
-             "each evaluation meets its own.")
-        .add("noisy", &This::noisy, "",
-             "false where neither problem nor policy draw anything: the search then trusts every value, and "
-             "repeats none.")
+        .automatic("common_scenarios", &This::common_scenarios, "",
+                   "Whether candidates that the optimizer compares meet the same scenarios (common random "
+                   "numbers); else each evaluation meets its own. auto: true for policies, false for "
+                   "objectives, whose noise would cancel.")
+        .automatic(
+            "noisy", &This::noisy, "",
+            "false where nothing is drawn: the search then trusts every value, and repeats none. auto: "
+            "true for policies; as they say for objectives.")
         .direct(&This::optimizer, "How to search.");
   }
 
  private:
-  TunedPolicy tuned_policy(const NodeContext& context) const {
+  bool of_objective() const { return !objective.id.empty(); }
+
+  std::unique_ptr<const SearchTarget> target(const NodeContext& context) const {
+    if (of_objective()) {
+      const Sub<Objective> family = load_objective(context.inputs("objective").front());
+      return std::make_unique<ObjectiveTarget>(*family, context.draws());
+    }
     const InputNode& node = context.inputs("policy").front();
     if (node.kind != "policy" || node.element.children.empty()) {
       throw std::invalid_argument(fmt::format(
@@ -218,92 +151,25 @@ struct OptimizeNode : Node {
           "parameters to tune",
           node.id));
     }
-    return {node.element.children.front(), free, low, high};
+    return std::make_unique<PolicyTarget>(
+        TunedPolicy(node.element.children.front(), free), load_problem(context.inputs("problem").front()),
+        PolicyTrial{episodes, horizon, discount, criterion}, context.draws().fork("evaluations"));
   }
 
-  SearchTask task(const TunedPolicy& tuned, const NodeContext& context) const {
-    return {.box = tuned.box(),
-            .guess = tuned.configured(),
-            .budget = budget,
-            .noisy = noisy,
-            .draws = context.draws().fork("search")};
-  }
-
-  static MadePolicy prepared(const TunedPolicy& tuned, std::span<const double> numbers,
-                             const Problem& target) {
-    Diagnostics diagnostics;
-    MadePolicy made = make<Policy>(tuned.at(numbers), diagnostics);
-    diagnostics.throw_if_any();
-    made.object->prepare(target.spaces(), target.simulator());
-    return made;
-  }
-
-  std::vector<double> evaluate(const Candidates& candidates, std::int64_t evaluations,
-                               const TunedPolicy& tuned, const Problem& target, NodeContext& context) const {
-    std::vector<double> values(candidates.points.rows());
-    const Draws draws = context.draws().fork("evaluations");
-    context.parallel().for_each(values.size(), [&](std::size_t i) {
-      std::vector<double> numbers(candidates.points.columns());
-      candidates.points.row(i, numbers);
-      const MadePolicy made = prepared(tuned, numbers, target);
-      const std::uint64_t number =
-          common_scenarios ? candidates.scenarios[i] : static_cast<std::uint64_t>(evaluations) + i;
-      Simulation simulation;
-      simulation.policy = made.object.get();
-      simulation.rollouts = static_cast<std::size_t>(episodes);
-      simulation.horizon = horizon.value_or(target.horizon());
-      simulation.discount = discount.value_or(target.discount());
-      simulation.first_scenario = number * static_cast<std::uint64_t>(episodes);
-      const Returns returns = target.episodes(simulation, draws, context.parallel());
-      values[i] = mean(criterion == Criterion::returns ? returns.total : returns.discounted);
-    });
-    return values;
-  }
-
-  static void write_policy(const MadePolicy& policy, const Spaces& spaces, NodeContext& context) {
-    PolicyFile file{.writer = {},
-                    .provenance = context.key(),
-                    .spaces = spaces,
-                    .component = policy.resolved,
-                    .arrays = {}};
-    policy->save(file.arrays);
-    write_policy_file(context.folder() / kPolicyFile, file);
-  }
-
-  static Table optimum(const TunedPolicy& tuned, const std::vector<double>& best) {
-    using Type = ColumnInfo::Type;
-    Table table;
-    table.columns = {
-        {"parameter", Type::text, "", "Number that was tuned; those of a list are counted from 0."},
-        {"unit", Type::text, "", "Its SI unit."},
-        {"low", Type::number, "", "Lower limit."},
-        {"high", Type::number, "", "Upper limit."},
-        {"configured", Type::number, "", "Where the search began."},
-        {"value", Type::number, "", "What was found best."}};
-    for (std::size_t i = 0; i < best.size(); ++i) {
-      const Axis& axis = tuned.box()[i];
-      table.rows.push_back({axis.name, axis.unit, axis.low, axis.high, tuned.configured()[i], best[i]});
-    }
-    return table;
-  }
-
-  static Table summary(const Tuning& tuning) {
-    using Type = ColumnInfo::Type;
-    Table table;
-    table.columns = {{"evaluations", Type::integer, "", "Evaluations made, repeated ones included."},
-                     {"not_finite", Type::integer, "", "Those whose value was not a finite number."},
-                     {"best_value", Type::number, "", "Value of the best point as the search estimates it."},
-                     {"stop_reason", Type::text, "", "Why the search ended."}};
-    const std::string reason = tuning.search().stop_reason();
-    table.rows.push_back({tuning.evaluations(), tuning.not_finite(), tuning.search().best_value(),
-                          reason.empty() ? std::string("budget") : reason});
-    return table;
+  SearchTask task(const SearchTarget& sought, const NodeContext& context) const {
+    SearchTask task;
+    task.box = limited(sought.box(), low, high);
+    task.guess = search_start(task.box, sought.guess(), start_low, start_high, context.draws().fork("start"));
+    task.budget = budget;
+    task.noisy = noisy.value_or(sought.noisy());
+    task.draws = context.draws().fork("search");
+    return task;
   }
 };
 
 const Component<Node, OptimizeNode> kComponent(
-    "optimize", "Tune numbers of a configured policy with a black-box optimizer.",
-    "L. Hofer's thesis (2017), 2.4.1 and appendix A");
+    "optimize", "Tune numbers of a configured policy, or a test function's, with a black-box optimizer.",
+    "L. Hofer's thesis (2017), 2.4.1 and appendix A", 2);
 
 }  // namespace
 }  // namespace coppice

@@ -1,19 +1,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 
 #include "engine/data/table_file.h"
 #include "engine/graph/artifacts.h"
+#include "engine/graph/nodes/criterion.h"
 #include "engine/graph/nodes/episodes.h"
 #include "engine/statistics/estimates.h"
 
 namespace coppice {
 namespace {
-
-enum class Criterion { returns, discounted_return };
-constexpr std::array<const char*, 2> kCriteria = {"return", "discounted_return"};
 
 /// The best of several policies, the replicates of a training for instance, on scenarios that are the same
 /// for all of them and that none was made with. Its return there is the largest of several estimates, so it
@@ -56,8 +53,7 @@ struct SelectNode : Node {
     for (const InputNode& input : context.inputs("policies")) {
       const MadePolicy policy = load_policy(input, *target);
       played.push_back(play(*target, *policy, context));
-      const bool plain = criterion == Criterion::returns;
-      values.push_back(mean(plain ? played.back().total : played.back().discounted));
+      values.push_back(criterion_value(played.back(), criterion));
     }
     const auto best =
         static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
@@ -77,7 +73,7 @@ struct SelectNode : Node {
                    at_least(1))
         .automatic("discount", &This::discount, "",
                    "Discount of a step, for the discounted return; auto: the problem's.", between(0, 1))
-        .choice("criterion", &This::criterion, {kCriteria.begin(), kCriteria.end()},
+        .choice("criterion", &This::criterion, criterion_names(),
                 "Of what the mean over episodes decides; of equal ones the first is taken.");
   }
 
@@ -95,16 +91,6 @@ struct SelectNode : Node {
     context.count("episodes", episodes);
     context.count("steps", steps);
     return run.returns();
-  }
-
-  static void write_policy(const MadePolicy& policy, const Spaces& spaces, NodeContext& context) {
-    PolicyFile file{.writer = {},
-                    .provenance = context.key(),
-                    .spaces = spaces,
-                    .component = policy.resolved,
-                    .arrays = {}};
-    policy->save(file.arrays);
-    write_policy_file(context.folder() / kPolicyFile, file);
   }
 
   /// Who the rows stand for is added where the run shows them: the policy must not depend on names.

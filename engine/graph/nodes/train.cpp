@@ -183,13 +183,7 @@ struct TrainNode : Node {
   }
 
   static void write(const TrainingResult& result, const Spaces& spaces, NodeContext& context) {
-    PolicyFile policy_file{.writer = {},
-                           .provenance = context.key(),
-                           .spaces = spaces,
-                           .component = result.policy.resolved,
-                           .arrays = {}};
-    result.policy->save(policy_file.arrays);
-    write_policy_file(context.folder() / kPolicyFile, policy_file);
+    write_policy(result.policy, spaces, context);
     if (!result.value) return;
     FunctionFile value_file{.writer = {},
                             .provenance = context.key(),

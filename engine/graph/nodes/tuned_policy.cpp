@@ -41,24 +41,12 @@ std::vector<double> numbers_of(std::string_view text) {
   return numbers;
 }
 
-void set_limits(Space& box, const std::vector<double>& given, double Axis::*side, std::string_view name) {
-  if (given.empty()) return;
-  if (given.size() != 1 && given.size() != box.size()) {
-    throw std::invalid_argument(fmt::format(
-        "{} has {} numbers, expected is one for all, or one for each of the {} numbers that are tuned", name,
-        given.size(), box.size()));
-  }
-  for (std::size_t i = 0; i < box.size(); ++i) box[i].*side = given[given.size() == 1 ? 0 : i];
-}
-
 }  // namespace
 
-TunedPolicy::TunedPolicy(Element policy, const std::vector<std::string>& parameters,
-                         const std::vector<double>& low, const std::vector<double>& high)
+TunedPolicy::TunedPolicy(Element policy, const std::vector<std::string>& parameters)
     : policy_(std::move(policy)) {
   for (const std::string& parameter : parameters) add(parameter);
   if (box_.empty()) throw std::invalid_argument("parameters names none; there is nothing to tune");
-  limit(low, high);
 }
 
 void TunedPolicy::add(const std::string& parameter) {
@@ -90,27 +78,6 @@ void TunedPolicy::add(const std::string& parameter) {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     box_.push_back(axis_of(*found, numbers.size() == 1 ? parameter : fmt::format("{}_{}", parameter, i)));
     configured_.push_back(numbers[i]);
-  }
-}
-
-/// The limits given must lie within those declared.
-void TunedPolicy::limit(const std::vector<double>& low, const std::vector<double>& high) {
-  const Space declared = box_;
-  set_limits(box_, low, &Axis::low, "low");
-  set_limits(box_, high, &Axis::high, "high");
-  for (std::size_t i = 0; i < box_.size(); ++i) {
-    const Axis& axis = box_[i];
-    if (!(axis.low <= axis.high) || axis.low < declared[i].low || axis.high > declared[i].high) {
-      throw std::invalid_argument(fmt::format(
-          "the limits of {} are {} and {}; expected are two in order{}", axis.name, axis.low, axis.high,
-          std::isfinite(declared[i].low) || std::isfinite(declared[i].high)
-              ? fmt::format(" in [{}, {}]", declared[i].low, declared[i].high)
-              : ""));
-    }
-    if (configured_[i] < axis.low || configured_[i] > axis.high) {
-      throw std::invalid_argument(fmt::format("{} begins at {}, outside of its limits {} and {}", axis.name,
-                                              configured_[i], axis.low, axis.high));
-    }
   }
 }
 

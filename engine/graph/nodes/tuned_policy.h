@@ -13,13 +13,12 @@ namespace coppice {
 /// numbers, one after the other.
 class TunedPolicy {
  public:
-  /// `policy` is resolved. The limits are given for each free number, or one for all, or none where the
-  /// declaration of the parameters gives them. Throws std::invalid_argument for parameters that the policy
-  /// does not have, that have no numbers to begin with, and for limits that do not hold these.
-  TunedPolicy(Element policy, const std::vector<std::string>& parameters, const std::vector<double>& low,
-              const std::vector<double>& high);
+  /// `policy` is resolved. Throws std::invalid_argument for parameters that the policy does not have, and for
+  /// those that have no numbers to begin with.
+  TunedPolicy(Element policy, const std::vector<std::string>& parameters);
 
-  /// An axis for each free number: `gain`, or `gains_0`, `gains_1` of a list; in SI units.
+  /// An axis for each free number: `gain`, or `gains_0`, `gains_1` of a list; in SI units, its limits those
+  /// declared.
   const Space& box() const { return box_; }
   const std::vector<double>& configured() const { return configured_; }
   /// The policy's element with these numbers.
@@ -31,7 +30,6 @@ class TunedPolicy {
     std::size_t numbers = 0;
   };
   void add(const std::string& parameter);
-  void limit(const std::vector<double>& low, const std::vector<double>& high);
 
   Element policy_;
   std::vector<Part> parts_;

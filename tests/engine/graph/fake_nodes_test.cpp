@@ -20,9 +20,14 @@ struct Source : Node {
   double amount = 1;
   FilePath file;
   bool fails = false;
+  bool leaves = false;
 
   std::vector<std::string> makes() const override { return {"data"}; }
   void run(NodeContext& context) const override {
+    if (fails && leaves) {
+      std::ofstream(context.folder() / "data.txt") << amount;
+      throw Unfinished("the source is dry");
+    }
     if (fails) throw std::runtime_error("the source is dry");
     const double draw = context.draws().uniform("amount", 0, 1);
     std::ofstream(context.folder() / "data.txt") << amount << " " << draw << "\n";
@@ -31,7 +36,8 @@ struct Source : Node {
     return node_parameters<Source>()
         .add("amount", &Source::amount, "", "Number.", at_least(0))
         .add("file", &Source::file, "", "File.")
-        .add("fails", &Source::fails, "", "Throw instead of writing.");
+        .add("fails", &Source::fails, "", "Throw instead of writing.")
+        .add("leaves", &Source::leaves, "", "What was written before is to be kept.");
   }
 };
 const Component<Node, Source> kSource("fake_source", "Makes data.", "no publication");

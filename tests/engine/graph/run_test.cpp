@@ -195,6 +195,19 @@ TEST_F(Run, AFailureSkipsWhatDependsOnItAndFinishesTheRest) {
   EXPECT_EQ(go(nodes).totals.to_run, 3u) << "what failed is tried again";
 }
 
+TEST_F(Run, KeepsWhatAFailedNodeWroteWhereItsMessageSays) {
+  const std::string nodes = "<fake_source id='bad' fails='true' amount='7' leaves='true'/>";
+  const RunOutcome outcome = go(nodes);
+  const fs::path kept = file("failed/nodes/bad");
+  EXPECT_EQ(outcome.failures,
+            std::vector<std::string>{"node bad: the source is dry\nwhat it wrote until then is in " +
+                                     kept.string()});
+  EXPECT_EQ(read_file(kept / "data.txt"), "7");
+  EXPECT_FALSE(fs::exists(file("nodes/bad")));
+  go("<fake_source id='good'/>");
+  EXPECT_FALSE(fs::exists(file("failed"))) << "it was of the last run";
+}
+
 TEST_F(Run, FailFastStartsNothingAfterAFailure) {
   RunOptions options;
   options.threads = 1;

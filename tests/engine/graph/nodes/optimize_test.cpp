@@ -1,12 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "engine/data/table_file.h"
 #include "engine/graph/artifacts.h"
-#include "engine/vocabulary/optimizer.h"
 #include "tests/engine/graph/nodes/fake_context.h"
+#include "tests/engine/graph/nodes/line_optimizer.h"
 
 namespace coppice::testing {
 namespace {
@@ -14,71 +12,6 @@ namespace {
 using ::testing::HasSubstr;
 using Attributes = std::vector<std::pair<std::string, std::string>>;
 
-/// Tries points of a line from the lower to the upper limits, three at a time under one scenario number,
-/// until the budget is spent.
-class LineSearch : public Search {
- public:
-  explicit LineSearch(SearchTask task) : task_(std::move(task)) {}
-
-  Candidates ask(std::int64_t limit) override {
-    const std::int64_t count = std::min({limit, task_.budget - told_, 3 - told_ % 3});
-    Candidates candidates{Matrix(static_cast<std::size_t>(count), task_.box.size()), {}};
-    for (std::size_t i = 0; i < candidates.points.rows(); ++i) {
-      candidates.points.set_row(i, point(told_ + static_cast<std::int64_t>(i)));
-      candidates.scenarios.push_back(static_cast<std::uint64_t>(told_ / 3));
-    }
-    return candidates;
-  }
-  void tell(std::span<const double> values) override {
-    for (const double value : values) {
-      if (told_ == 0 || value > best_value_) {
-        best_ = point(told_);
-        best_value_ = value;
-      }
-      ++told_;
-    }
-  }
-  std::vector<double> best() const override { return best_; }
-  double best_value() const override { return best_value_; }
-  std::string stop_reason() const override { return told_ == task_.budget ? "budget" : ""; }
-  std::vector<double> measures() const override { return {static_cast<double>(told_)}; }
-  void save(Archive& archive) const override {
-    archive.put("told", std::vector<std::int64_t>{told_});
-    archive.put("best", best_);
-    archive.put("best_value", std::vector<double>{best_value_});
-  }
-  void load(Archive& archive) override {
-    told_ = archive.get<std::vector<std::int64_t>>("told").at(0);
-    best_ = archive.get<std::vector<double>>("best");
-    best_value_ = archive.get<std::vector<double>>("best_value").at(0);
-  }
-
- private:
-  std::vector<double> point(std::int64_t i) const {
-    std::vector<double> x;
-    const double share =
-        task_.budget == 1 ? 0 : static_cast<double>(i) / static_cast<double>(task_.budget - 1);
-    for (const Axis& axis : task_.box) x.push_back(axis.low + share * (axis.high - axis.low));
-    return x;
-  }
-
-  const SearchTask task_;
-  std::int64_t told_ = 0;
-  std::vector<double> best_;
-  double best_value_ = 0;
-};
-
-struct LineOptimizer : Optimizer {
-  std::unique_ptr<Search> start(const SearchTask& task) const override {
-    for (const Axis& axis : task.box) {
-      if (!std::isfinite(axis.low) || !std::isfinite(axis.high))
-        throw std::invalid_argument("the line needs finite limits");
-    }
-    return std::make_unique<LineSearch>(task);
-  }
-  std::vector<std::string> measures() const override { return {"told"}; }
-  static Parameters<LineOptimizer> parameters() { return {}; }
-};
 const Component<Optimizer, LineOptimizer> kLine("line_of_test", "Tries a line.", "no publication");
 
 Sub<Node> tuning(Attributes more = {}, const std::string& parameters = "gains") {
@@ -119,6 +52,37 @@ TEST(Optimize, MakesThePolicyWithTheBestNumbers) {
   EXPECT_EQ(history.columns.back().name, "told");
   EXPECT_EQ(number(history.rows.back()[0]), 9);
   EXPECT_EQ(context.counts.at("evaluations"), 9);
+}
+
+/// Pushes with its level; refuses levels above 0.6.
+struct CautiousPolicy : Policy {
+  double level = 0;
+  void prepare(const Spaces&, const Simulator*) override {}
+  void act(std::span<const double>, std::span<double>, const Draws&, Action& action) const override {
+    action.id = 0;
+    action.values = Vec<kMaxActionSize>{level};
+  }
+  void check() const {
+    if (level > 0.6) throw std::invalid_argument("a level of " + std::to_string(level) + " is too much");
+  }
+  static Parameters<CautiousPolicy> parameters() {
+    return Parameters<CautiousPolicy>().add("level", &CautiousPolicy::level, "", "Force.");
+  }
+};
+const Component<Policy, CautiousPolicy> kCautious("cautious_of_test", "Pushes a little.", "no publication");
+
+TEST(Optimize, SaysWhichNumbersFailedAndKeepsTheHistory) {
+  FakeContext context;
+  give(context);
+  context.given["policy"] = {input(element("policy", {{"id", "law"}}, {element("cautious_of_test", {})}))};
+  const Sub<Node> node = tuning({{"low", "0"}, {"high", "1"}, {"budget", "11"}}, "level");
+  node->check(context);
+  const std::string message = error_of([&] { node->run(context); });
+  EXPECT_THAT(message, HasSubstr("evaluation 8 of 11 failed, of level = 0.7"));  // 0, 0.1, ..., 0.7
+  EXPECT_THAT(message, HasSubstr("a level of 0.7"));
+  const Table history = read_table(context.folder() / kProgressFile);
+  ASSERT_EQ(history.rows.size(), 2u);
+  EXPECT_EQ(number(history.rows.back()[0]), 6);
 }
 
 TEST(Optimize, GoesOnWhereItWasStopped) {
