@@ -31,12 +31,14 @@ class Bytes : public RunsInAFolder, public testing::WithParamInterface<Shipped> 
     const Ended ended = run(command() + " --progress none " + options);
     ASSERT_EQ(ended.status, 0) << ended.err;
   }
-  /// What must be reproducible: policies and tables.
+  /// What must be reproducible: policies, searches and tables.
   std::map<std::string, std::string> reproducible(const std::string& out) const {
     const auto files = results(folder_ / out / GetParam().name);
-    std::size_t policies = 0;
-    for (const auto& [name, bytes] : files) policies += name.ends_with(".policy") ? 1 : 0;
-    EXPECT_GE(policies, 1U);
+    std::size_t found = 0;
+    for (const auto& [name, bytes] : files) {
+      found += name.ends_with(".policy") || name.ends_with("/search.csv") ? 1 : 0;
+    }
+    EXPECT_GE(found, 1U);
     return files;
   }
 };
@@ -73,7 +75,8 @@ TEST_P(Bytes, SurviveKills) {
 INSTANTIATE_TEST_SUITE_P(Configs, Bytes,
                          testing::Values(Shipped{"quickstart.xml", "replicates:=2", "quickstart"},
                                          Shipped{"sweeps/forest_size.xml", "scale:=ci replicates:=1",
-                                                 "forest_size"}));
+                                                 "forest_size"},
+                                         Shipped{"sweeps/optimizers.xml", "scale:=ci", "optimizers"}));
 
 }  // namespace
 }  // namespace coppice

@@ -36,15 +36,18 @@ constexpr const char* kConfig = R"(<experiment coppice="1" name="renamed" seed="
   <timings id="timing_p" of="l_test" rows="policy, trees"/>
   <objective id="t_bowl"><sphere n="2"/></objective>
   <optimize id="u_found" objective="t_bowl" budget="40" low="-5" high="5" replicates="2"><cross_entropy/></optimize>
+  <runtimes id="v_when" of="u_found" rows="objective" targets="1"/>
+  <gaps id="w_near" of="u_found" rows="objective"/>
+  <iohprofiler id="x_log" of="u_found"/>
 </experiment>
 )";
 constexpr const char* kLogged =
     "episode,step,s_position,s_speed,action_id,a_acceleration,reward,n_position,n_speed,terminal\n"
     "0,0,1,0,0,0.5,-1.25,1,0.025,0\n0,1,0.5,0.025,0,-1,-2,1.00125,-0.025,0\n";
-const std::vector<std::string> kIds = {"a_car",  "b_any",  "c_lqr",   "d_old",   "e_log",  "f_seen",
-                                       "g_fit",  "h_tree", "i_best",  "j_more",  "k_next", "l_test",
-                                       "m_all",  "n_pair", "o_line",  "p_tune",  "q_said", "r_drawn",
-                                       "s_ship", "t_bowl", "u_found", "timing_p"};
+const std::vector<std::string> kIds = {"a_car",  "b_any",  "c_lqr",  "d_old",   "e_log",  "f_seen", "g_fit",
+                                       "h_tree", "i_best", "j_more", "k_next",  "l_test", "m_all",  "n_pair",
+                                       "o_line", "p_tune", "q_said", "r_drawn", "s_ship", "t_bowl", "u_found",
+                                       "v_when", "w_near", "x_log",  "timing_p"};
 
 std::string replaced_all(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
@@ -102,7 +105,8 @@ TEST_F(Renaming, OfEveryNodeChangesNoByteButTheNamesInTables) {
   folder_.write("renamed.xml", config);
   // Only what shows names is made again: nothing depends on it.
   EXPECT_EQ(executed("renamed.xml"),
-            (Names{renamed("m_all"), renamed("n_pair"), renamed("o_line"), renamed("timing_p")}));
+            (Names{renamed("m_all"), renamed("n_pair"), renamed("o_line"), renamed("timing_p"),
+                   renamed("v_when"), renamed("w_near"), renamed("x_log")}));
   EXPECT_EQ(results(folder_ / "out/renamed"), expected);
   EXPECT_EQ(executed("renamed.xml --out elsewhere").size(), executed("renamed.xml --out third").size());
   EXPECT_EQ(results(folder_ / "elsewhere/renamed"), expected);
