@@ -12,12 +12,14 @@ struct RunNode {
   std::string run_folder;
   std::string key;
   std::optional<std::uint64_t> jobs;
+  std::optional<std::uint64_t> memory_limit;
 
   static Arguments<RunNode> arguments() {
     return Arguments<RunNode>()
         .positional("RUNDIR", &RunNode::run_folder, "Folder of the experiment's run.", Completes::folder)
         .positional("KEY", &RunNode::key, "Key of the node.", Completes::nothing)
-        .option("-j,--jobs", "N", &RunNode::jobs, "Threads; one for each core when not given.");
+        .option("-j,--jobs", "N", &RunNode::jobs, "Threads; one for each core when not given.")
+        .option("--memory-limit", "BYTES", &RunNode::memory_limit, "Memory; unlimited when not given.");
   }
 
   int run(const CommandLine& line, Console&) const {
@@ -26,7 +28,7 @@ struct RunNode {
     options.threads = thread_count(line, jobs);
     options.stop = &interrupt_requested();
     options.command = line.arguments();
-    run_node(run_folder, key, options);
+    run_node(run_folder, key, static_cast<double>(memory_limit.value_or(0)), options);
     return kDone;
   }
 };

@@ -144,8 +144,10 @@ struct PlanCommand : ConfigInputs, SelectionInputs {
     const std::vector<Plan> plans = plan_all(line, *this);
     const Selection selected = selection(line);
     check_selection(plans, selected);
-    for (const Plan& plan : plans) {
-      const Statuses statuses = inspect(plan, selected, out);
+    const std::vector<Statuses> of_plans = inspect(plans, selected, out);
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+      const Plan& plan = plans[i];
+      const Statuses& statuses = of_plans[i];
       if (as_json) {
         all.push_back(json(plan, statuses, threads));
       } else {

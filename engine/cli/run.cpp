@@ -35,9 +35,9 @@ std::string published_files(const Plan& plan, const fs::path& out) {
 std::string summary(const Console& console, const RunOutcome& outcome) {
   const RunTotals& totals = outcome.totals;
   if (totals.to_run == 0) return "everything is up to date: " + counted(totals.up_to_date, "node") + '\n';
-  std::string text = outcome.interrupted        ? console.styled(Console::Style::yellow, "interrupted")
-                     : outcome.failures.empty() ? console.styled(Console::Style::green, "done")
-                                                : console.styled(Console::Style::red, "failed");
+  std::string text = outcome.interrupted              ? console.styled(Console::Style::yellow, "interrupted")
+                     : outcome.exit_status() == kDone ? console.styled(Console::Style::green, "done")
+                                                      : console.styled(Console::Style::red, "failed");
   text += fmt::format(": {} run, {} up to date", counted(totals.finished, "node"), totals.up_to_date);
   if (totals.failed > 0) text += fmt::format(", {} failed", totals.failed);
   if (totals.skipped > 0) text += fmt::format(", {} skipped because an input failed", totals.skipped);
@@ -89,9 +89,11 @@ struct Run : ConfigInputs, SelectionInputs {
     options.command = line.arguments();
     options.page = write_reports;
     const RunOutcome outcome = coppice::run(plans, options);
+    for (const std::string& trouble : outcome.troubles)
+      console.say(console.styled(Console::Style::red, "error") + ": " + trouble + "\n");
     if (talks) console.say(summary(console, outcome));
     for (const Plan& plan : plans) console.offer(published_files(plan, out));
-    return outcome.interrupted ? kInterrupted : outcome.failures.empty() ? kDone : kFailed;
+    return outcome.exit_status();
   }
 };
 

@@ -178,7 +178,8 @@ std::optional<std::vector<std::size_t>> Expander::point_of(const Attribute& at,
   for (const std::string& item : split_items(*text)) {
     const std::size_t equals = item.find('=');
     const std::string column(trim(item.substr(0, equals)));
-    if (equals == std::string::npos || !given.emplace(column, trim(item.substr(equals + 1))).second) {
+    if (equals == std::string::npos ||
+        !given.emplace(column, unquoted_item(item.substr(equals + 1))).second) {
       error(at.value_place, context, fmt::format("'{}' is not one column=value for each column", *text));
       return std::nullopt;
     }

@@ -41,7 +41,7 @@ Element flat_node(const NodeElement& node) {
   if (node.sweeps.empty()) return element;
   std::vector<std::string> point;
   for (const auto& [column, value] : node.point) {
-    point.push_back(config::quoted_item(fmt::format("{}={}", column, value)));
+    point.push_back(column + "=" + config::quoted_item(value));
   }
   add(element, "over", join(node.sweeps));
   add(element, "at", join(point));

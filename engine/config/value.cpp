@@ -28,6 +28,10 @@ void for_each_item(std::string_view text, const Found& found) {
     // apostrophe.
     const std::string_view before = trim(text.substr(begin, i - begin));
     const bool opens = depth > 0 || before.empty() || before.back() == '=';
+    if (quoted && c == '\'' && text.substr(i + 1, 1) == "'") {  // a quote in quotes
+      ++i;
+      continue;
+    }
     if (c == '\'' && (quoted || opens)) quoted = !quoted;
     if (quoted) continue;
     if (c == '(' || c == '[' || c == '{') ++depth;
@@ -72,11 +76,15 @@ std::vector<std::size_t> item_offsets(std::string_view text) {
 }
 
 std::string quoted_item(const std::string& item) {
-  const std::vector<std::string> items = split_items(item);
-  if (items.size() == 1 && items.front() == item) return item;
+  // A bracket or quote left open would take in what follows.
+  if (!item.empty() && split_items(item + ",") == std::vector<std::string>{item, ""}) return item;
   std::string text = "'";
   for (const char c : item) text += c == '\'' ? std::string("''") : std::string(1, c);
   return text + "'";
+}
+
+std::string unquoted_item(std::string_view text) {
+  return unquoted(trim(text));
 }
 
 Value Value::inferred(std::string_view text) {

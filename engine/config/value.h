@@ -59,7 +59,10 @@ std::vector<std::string> split_items(std::string_view text);
 /// The offset in `text` at which each of its items begins (after blanks), in the order of split_items.
 std::vector<std::size_t> item_offsets(std::string_view text);
 
-/// The item as split_items reads it back: quoted where it needs to be.
+/// The item as split_items reads it back, whatever follows it: quoted where it needs to be.
 std::string quoted_item(const std::string& item);
+
+/// The opposite: the text without blanks around it and without the quotes that it stands in.
+std::string unquoted_item(std::string_view text);
 
 }  // namespace coppice::config

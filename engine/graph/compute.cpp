@@ -59,10 +59,6 @@ ResultRecord compute_node(const Plan& plan, std::size_t index, const std::filesy
   return store.commit(folder, std::move(record));
 }
 
-bool needs_process(const PlannedNode& node) {
-  return node.node->time_limit > 0 || node.node->memory_limit > 0;
-}
-
 namespace {
 
 /// What the program said, without its name in front.
@@ -75,16 +71,17 @@ std::string last_words(const ChildEnd& end) {
 
 }  // namespace
 
-ResultRecord compute_in_process(const PlannedNode& node, const std::filesystem::path& run_folder,
-                                const Store& store, const ChildProgram& program,
-                                const std::atomic<bool>& stop) {
-  const double limit = node.node->time_limit;
+ResultRecord compute_in_process(const PlannedNode& node, const Limits& limits,
+                                const std::filesystem::path& run_folder, const Store& store,
+                                const ChildProgram& program, const std::atomic<bool>& stop) {
+  const double limit = limits.time;
   double allowed = limit;
   const std::optional<Checkpoint> before = read_checkpoint(store.checkpoint(node.key));
   if (limit > 0 && before) allowed = std::max(limit - before->work.wall_s, 0.001);
   const ChildEnd end = run_child(program.runner,
                                  {"node", std::filesystem::absolute(run_folder).string(), node.key, "-j",
-                                  std::to_string(program.threads)},
+                                  std::to_string(program.threads), "--memory-limit",
+                                  std::to_string(static_cast<std::uint64_t>(limits.memory))},
                                  allowed, stop);
   if (end.how == ChildEnd::How::interrupted) throw Interrupted();
   std::optional<ResultRecord> record = store.find(node.key);

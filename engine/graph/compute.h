@@ -21,14 +21,22 @@ struct ChildProgram {
   std::size_t threads = 1;
 };
 
-/// True for a node with a time or memory limit, which only a process of its own can keep.
-bool needs_process(const PlannedNode& node);
+/// What a node may use at most; 0: any. Only a process of its own can keep a limit.
+struct Limits {
+  double time = 0;    ///< s
+  double memory = 0;  ///< byte
 
-/// The same in a process of its own, within the node's limits. Throws std::runtime_error with the limit and
+  Limits() = default;
+  Limits(double seconds, double bytes) : time(seconds), memory(bytes) {}
+  explicit Limits(const NodeOptions& node) : time(node.time_limit), memory(node.memory_limit) {}
+  bool any() const { return time > 0 || memory > 0; }
+};
+
+/// The same in a process of its own, within limits. Throws std::runtime_error with the limit and
 /// what was used, or what the process said; Interrupted when it was stopped.
-ResultRecord compute_in_process(const PlannedNode& node, const std::filesystem::path& run_folder,
-                                const Store& store, const ChildProgram& program,
-                                const std::atomic<bool>& stop);
+ResultRecord compute_in_process(const PlannedNode& node, const Limits& limits,
+                                const std::filesystem::path& run_folder, const Store& store,
+                                const ChildProgram& program, const std::atomic<bool>& stop);
 
 /// "1.5 GB", in units of 1000.
 std::string memory_text(double bytes);

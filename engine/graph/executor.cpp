@@ -31,6 +31,12 @@ std::vector<std::vector<NodeStatus>> statuses_of(const std::vector<std::unique_p
 
 }  // namespace
 
+std::size_t Workspace::up_to_date() const {
+  return static_cast<std::size_t>(std::count_if(statuses.begin(), statuses.end(), [](const NodeStatus& s) {
+    return s.reason == Reason::up_to_date || s.reason == Reason::shared;
+  }));
+}
+
 Executor::Executor(std::vector<std::unique_ptr<Workspace>>& workspaces, Store& store, Index& index,
                    const RunOptions& options)
     : workspaces_(workspaces),
@@ -40,18 +46,25 @@ Executor::Executor(std::vector<std::unique_ptr<Workspace>>& workspaces, Store& s
       jobs_(make_jobs(plans_of(workspaces), statuses_of(workspaces))),
       durations_(read_durations(options.out)),
       pool_(static_cast<std::size_t>(std::max(options.threads, 0)), &stop_) {
-  for (const auto& workspace : workspaces_) {
-    for (const NodeStatus& status : workspace->statuses) {
-      if (status.reason == Reason::up_to_date) ++totals_.up_to_date;
-    }
-  }
+  for (const auto& workspace : workspaces_) totals_.up_to_date += workspace->up_to_date();
   totals_.to_run = jobs_.size();
-  for (const Job& job : jobs_) limited_ += needs_process(node_of(job)) ? 1 : 0;
+  for (const Job& job : jobs_) limited_ += limits_of(job).any() ? 1 : 0;
 }
 
 const PlannedNode& Executor::node_of(const Job& job) const {
   const NodePlace& place = job.places.front();
   return workspaces_[place.plan]->plan.nodes[place.node];
+}
+
+/// The widest that any node sets that wants the result: who sets none is not to lack it for another's.
+Limits Executor::limits_of(const Job& job) const {
+  std::optional<Limits> widest;
+  const auto wider = [](double a, double b) { return a == 0 || b == 0 ? 0 : std::max(a, b); };
+  for (const NodePlace& place : job.places) {
+    const Limits own(*workspace_of(place).plan.nodes[place.node].node);
+    widest = widest ? Limits(wider(widest->time, own.time), wider(widest->memory, own.memory)) : own;
+  }
+  return widest.value_or(Limits());
 }
 
 void Executor::run() {
@@ -84,7 +97,7 @@ void Executor::submit(std::size_t job) {
   Task task;
   task.order = static_cast<double>(job);
   task.threads = static_cast<std::size_t>(node.node->threads);
-  if (needs_process(node)) {
+  if (limits_of(jobs_[job]).any()) {
     const std::size_t share = std::max<std::size_t>(pool_.threads() / limited_, 1);
     task.cores = task.threads > 0 ? std::min(task.threads, pool_.threads()) : share;
     task.threads = task.cores;
@@ -127,15 +140,15 @@ ResultRecord Executor::compute(Job& job, TaskParallel& parallel, Active& active)
   const NodePlace& place = job.places.front();
   Workspace& workspace = workspace_of(place);
   const PlannedNode& node = workspace.plan.nodes[place.node];
-  if (needs_process(node)) {
+  if (const Limits limits = limits_of(job); limits.any()) {
     // The process does nothing when the result is there.
     const bool anew = std::any_of(job.places.begin(), job.places.end(), [&](const NodePlace& each) {
       const Reason reason = workspace_of(each).statuses[each.node].reason;
       return reason == Reason::forced || reason == Reason::damaged;
     });
     if (anew) store_.remove(node.key);
-    return compute_in_process(node, workspace.folder.path(), store_, {options_.runner, parallel.width()},
-                              stop_);
+    return compute_in_process(node, limits, workspace.folder.path(), store_,
+                              {options_.runner, parallel.width()}, stop_);
   }
   return compute_node(workspace.plan, place.node, workspace.folder.path(), store_, parallel,
                       [&](const RunningContext* context) {
@@ -245,7 +258,7 @@ void Executor::tell(const Job& job, const char* what, const std::string& message
       try {
         workspace.journal->write(std::move(event));
       } catch (const std::runtime_error& error) {
-        failures_.push_back(error.what());
+        troubles_.push_back(error.what());
         workspace.journal.reset();  // said once
       }
     }

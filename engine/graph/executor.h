@@ -29,6 +29,9 @@ struct Workspace {
   std::unique_ptr<Journal> journal;  ///< null for an experiment with nothing to do
   std::string started;
   bool failed = false;
+
+  /// Nodes whose results are there, or come with those of others.
+  std::size_t up_to_date() const;
 };
 
 /// Runs the jobs of several experiments on one core budget, each when what it reads is done.
@@ -41,6 +44,7 @@ class Executor {
   void run();
 
   const std::vector<std::string>& failures() const { return failures_; }
+  const std::vector<std::string>& troubles() const { return troubles_; }
   bool interrupted() const { return interrupted_; }
   RunTotals totals() const;
 
@@ -53,6 +57,7 @@ class Executor {
   using Lock = std::unique_lock<std::mutex>;
 
   const PlannedNode& node_of(const Job& job) const;
+  Limits limits_of(const Job& job) const;
   Workspace& workspace_of(const NodePlace& place) const { return *workspaces_[place.plan]; }
   void submit(std::size_t job);
   void execute(std::size_t job, TaskParallel& parallel);
@@ -83,7 +88,7 @@ class Executor {
   RunTotals totals_;
   Durations durations_;
   double next_prediction_s_ = 0;
-  std::vector<std::string> failures_;
+  std::vector<std::string> failures_, troubles_;
   bool interrupted_ = false;
   Pool pool_;  ///< last: its tasks use what is above
 };

@@ -22,7 +22,8 @@ std::vector<Job> make_jobs(const std::vector<const Plan*>& plans,
       const PlannedNode& node = plans[p]->nodes[n];
       const auto job = by_key.find(node.key);
       if (job == by_key.end() || statuses[p][n].reason == Reason::not_selected) continue;
-      jobs[job->second].places.push_back({p, n});
+      std::vector<NodePlace>& places = jobs[job->second].places;
+      places.insert(statuses[p][n].runs ? places.begin() : places.end(), {p, n});
       for (const PlannedInput& input : node.inputs) {
         for (const std::size_t i : input.nodes) {
           const auto needed = by_key.find(plans[p]->nodes[i].key);

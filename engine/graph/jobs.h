@@ -18,7 +18,7 @@ struct NodePlace {
 struct Job {
   enum class State { waiting, running, done, failed, skipped, interrupted };
   std::string key;
-  std::vector<NodePlace> places;
+  std::vector<NodePlace> places;        ///< the one that runs, then those that share its result
   std::vector<std::size_t> dependants;  ///< jobs that read it
   std::size_t waiting_for = 0;          ///< jobs that it reads and that are not done
   State state = State::waiting;

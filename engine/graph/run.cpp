@@ -42,7 +42,7 @@ class FolderUpdate {
   bool nothing_to_do() const {
     const RunFolder& folder = workspace_.folder;
     for (std::size_t i = 0; i < workspace_.plan.nodes.size(); ++i) {
-      if (workspace_.statuses[i].runs || is_to_place(i)) return false;
+      if (is_to_come(i) || is_to_place(i)) return false;
     }
     if (!folder.tables_joined(workspace_.plan)) return false;
     if (folder.has_more_than(wanted()) || !has_text(folder.path() / "resolved.xml", resolved_)) return false;
@@ -61,7 +61,7 @@ class FolderUpdate {
     w.journal->write(event_of_run("started"));
     index.begin_run(w.plan.experiment.name, w.started);
     for (std::size_t i = 0; i < w.plan.nodes.size(); ++i) {
-      if (w.statuses[i].runs || !is_to_place(i)) continue;
+      if (!is_to_place(i)) continue;
       const std::optional<ResultRecord> result = store.find(w.plan.nodes[i].key);
       if (!result)
         throw std::runtime_error("the result of " + w.plan.nodes[i].name + " vanished from the store");
@@ -98,13 +98,17 @@ class FolderUpdate {
     return status.reason == Reason::up_to_date && !status.placed;
   }
 
+  bool is_to_come(std::size_t node) const {
+    return workspace_.statuses[node].runs || workspace_.statuses[node].reason == Reason::shared;
+  }
+
   /// Places of the folder whose content stays.
   std::vector<std::string> wanted() const {
     std::vector<std::string> keep;
     for (std::size_t i = 0; i < workspace_.plan.nodes.size(); ++i) {
       const PlannedNode& node = workspace_.plan.nodes[i];
       if (!node.node->labelled_tables().empty()) keep.push_back(RunFolder::joined_table(node.id));
-      if (!workspace_.statuses[i].runs && workspace_.statuses[i].placed) keep.push_back(node.folder);
+      if (!is_to_come(i) && workspace_.statuses[i].placed) keep.push_back(node.folder);
     }
     return keep;
   }
@@ -137,10 +141,10 @@ RunOptions completed(RunOptions options) {
 Workspaces open_workspaces(const std::vector<Plan>& plans, const RunOptions& options) {
   Workspaces workspaces;
   for (const Plan& plan : plans) {
-    Workspace& workspace = *workspaces.emplace_back(std::make_unique<Workspace>(plan, options.out));
-    workspace.folder.lock();
-    workspace.statuses = inspect(plan, options.selection, options.out);
+    workspaces.emplace_back(std::make_unique<Workspace>(plan, options.out))->folder.lock();
   }
+  std::vector<std::vector<NodeStatus>> statuses = inspect(plans, options.selection, options.out);
+  for (std::size_t i = 0; i < plans.size(); ++i) workspaces[i]->statuses = std::move(statuses[i]);
   return workspaces;
 }
 
@@ -155,9 +159,7 @@ bool has_leftovers(const fs::path& store) {
 std::size_t up_to_date(const Workspaces& workspaces) {
   std::size_t count = 0;
   for (const auto& workspace : workspaces) {
-    const std::vector<NodeStatus>& all = workspace->statuses;
-    count += static_cast<std::size_t>(std::count_if(
-        all.begin(), all.end(), [](const NodeStatus& s) { return s.reason == Reason::up_to_date; }));
+    count += workspace->up_to_date();
   }
   return count;
 }
@@ -190,15 +192,17 @@ RunOutcome run(const std::vector<Plan>& plans, const RunOptions& given) {
   executor.run();
   outcome.totals = executor.totals();
   outcome.failures = executor.failures();
+  outcome.troubles = executor.troubles();
   outcome.interrupted = executor.interrupted();
   for (FolderUpdate& update : updates) {
     for (std::string& wrong : update.end(outcome.interrupted, index))
-      outcome.failures.push_back(std::move(wrong));
+      outcome.troubles.push_back(std::move(wrong));
   }
   return outcome;
 }
 
-void run_node(const fs::path& run_folder, const std::string& key, const RunOptions& given) {
+void run_node(const fs::path& run_folder, const std::string& key, double memory_limit,
+              const RunOptions& given) {
   die_with_parent();
   const RunOptions options = completed(given);
   const Plan plan = make_plan(expand((run_folder / "resolved.xml").string(), {}));
@@ -212,13 +216,12 @@ void run_node(const fs::path& run_folder, const std::string& key, const RunOptio
   if (store.find(key)) return;
 
   Pool pool(static_cast<std::size_t>(options.threads), options.stop);
-  const double limit = node->node->memory_limit;
-  if (limit > 0) limit_memory(limit);
+  if (memory_limit > 0) limit_memory(memory_limit);
   const auto out_of_memory = [&] {
     release_memory_limit();
     return std::runtime_error(
         fmt::format("ran out of memory: its memory_limit is {}; it had {} and needed more",
-                    memory_text(limit), memory_text(peak_memory())));
+                    memory_text(memory_limit), memory_text(peak_memory())));
   };
   try {
     Task task;
@@ -228,13 +231,13 @@ void run_node(const fs::path& run_folder, const std::string& key, const RunOptio
     pool.submit(std::move(task));
     pool.wait();
   } catch (const std::bad_alloc&) {
-    if (limit <= 0) throw;
+    if (memory_limit <= 0) throw;
     throw out_of_memory();
   } catch (const Interrupted&) {
     throw;
   } catch (const std::runtime_error& error) {
     release_memory_limit();
-    if (limit <= 0 || peak_memory() < limit) throw;
+    if (memory_limit <= 0 || peak_memory() < memory_limit) throw;
     // Whatever it was, it happened where even small calls of the system are refused their memory.
     throw std::runtime_error(fmt::format("{} ({})", out_of_memory().what(), error.what()));
   }

@@ -66,9 +66,10 @@ struct RunOptions {
 struct RunOutcome {
   RunTotals totals;
   std::vector<std::string> failures;  ///< "node scores variant=HA r003: ..."
+  std::vector<std::string> troubles;  ///< with what is about no node: tables of all replicates, the page, ...
   bool interrupted = false;
   /// 0 all done, 1 a node failed, 3 interrupted.
-  int exit_status() const { return interrupted ? 3 : failures.empty() ? 0 : 1; }
+  int exit_status() const { return interrupted ? 3 : failures.empty() && troubles.empty() ? 0 : 1; }
 };
 
 /// Runs what is not up to date in `options.out`, one folder for each experiment. The same call resumes.
@@ -77,7 +78,9 @@ struct RunOutcome {
 RunOutcome run(const std::vector<Plan>& plans, const RunOptions& options);
 
 /// Runs the node with this key of a run folder, from its resolved.xml, unless its result is there: what the
-/// hidden command `runner node RUNDIR KEY` does. Prints nothing; a failure is thrown.
-void run_node(const std::filesystem::path& run_folder, const std::string& key, const RunOptions& options);
+/// hidden command `runner node RUNDIR KEY` does. With a limit of its memory in byte, unless that is 0. Prints
+/// nothing; a failure is thrown.
+void run_node(const std::filesystem::path& run_folder, const std::string& key, double memory_limit,
+              const RunOptions& options);
 
 }  // namespace coppice

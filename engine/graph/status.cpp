@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <unordered_map>
 
 #include "engine/graph/events.h"
 #include "engine/graph/index.h"
@@ -170,6 +171,31 @@ void verify_inputs(const Plan& plan, const Inspector& inspector, std::vector<Nod
   }
 }
 
+/// Makes one node run of those that would make the same result.
+class Sharing {
+ public:
+  void mark(const Plan& plan, std::vector<NodeStatus>& statuses) {
+    for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
+      if (!statuses[i].runs) continue;
+      const auto [first, is_new] = makers_.try_emplace(plan.nodes[i].key, Maker{&plan, i});
+      if (is_new || (first->second.plan == &plan && first->second.node == i)) continue;
+      const auto& [its_plan, node] = first->second;
+      statuses[i].reason = Reason::shared;
+      statuses[i].runs = false;
+      statuses[i].predicted_s.reset();
+      statuses[i].shared_with = its_plan->nodes[node].name;
+      if (its_plan != &plan) statuses[i].shared_with += " of " + its_plan->experiment.name;
+    }
+  }
+
+ private:
+  struct Maker {
+    const Plan* plan;
+    std::size_t node;
+  };
+  std::unordered_map<std::string, Maker> makers_;
+};
+
 std::string shortened(const std::string& value) {
   if (value.empty()) return "(none)";
   return value.size() > 60 ? value.substr(0, 57) + "..." : value;
@@ -193,6 +219,8 @@ std::string to_text(const NodeStatus& status) {
       return "damaged";
     case Reason::forced:
       return "forced";
+    case Reason::shared:
+      return "the same as " + status.shared_with;
     case Reason::changed:
       break;
   }
@@ -259,7 +287,16 @@ std::vector<NodeStatus> inspect(const Plan& plan, const Selection& selection,
     if (!statuses[i].runs) continue;
     statuses[i].predicted_s = durations.predict(plan.nodes[i].family, plan.nodes[i].component);
   }
+  Sharing().mark(plan, statuses);
   return statuses;
+}
+
+std::vector<std::vector<NodeStatus>> inspect(const std::vector<Plan>& plans, const Selection& selection,
+                                             const std::filesystem::path& out) {
+  std::vector<std::vector<NodeStatus>> all;
+  Sharing sharing;
+  for (const Plan& plan : plans) sharing.mark(plan, all.emplace_back(inspect(plan, selection, out)));
+  return all;
 }
 
 std::optional<double> predicted_total(const std::vector<NodeStatus>& nodes, int threads) {

@@ -18,7 +18,8 @@ enum class Reason {
   changed,
   missing_output,
   damaged,
-  forced
+  forced,
+  shared
 };
 
 /// A line of the key text that differs from the last run's.
@@ -34,6 +35,7 @@ struct NodeStatus {
   bool runs = false;            ///< false when its result is there, if only in the store, from another run
   bool placed = false;          ///< its result lies in the run folder
   std::vector<Change> changes;  ///< of `changed`
+  std::string shared_with;      ///< of `shared`: the node that makes the same result in this run
   std::optional<double> predicted_s;  ///< from recorded durations; none without evidence
 };
 
@@ -63,9 +65,14 @@ void check_selection(const std::vector<Plan>& plans, const Selection& selection)
 bool selects_any(const Plan& plan, const Selection& selection);
 
 /// The state of every node of the plan in the output folder `out`. Reads only: dates of files, and the whole
-/// of those that a node that runs will read, which therefore are what was stored.
+/// of those that a node that runs will read, which therefore are what was stored. Of nodes with one key the
+/// first runs.
 std::vector<NodeStatus> inspect(const Plan& plan, const Selection& selection,
                                 const std::filesystem::path& out);
+
+/// The same for all plans of a run.
+std::vector<std::vector<NodeStatus>> inspect(const std::vector<Plan>& plans, const Selection& selection,
+                                             const std::filesystem::path& out);
 
 /// Time that the running nodes would take on so many cores; none unless every one has a prediction.
 std::optional<double> predicted_total(const std::vector<NodeStatus>& nodes, int threads);

@@ -171,6 +171,20 @@ TEST_F(Runs, ShowFailuresAndFinishTheRest) {
   EXPECT_TRUE(contains(status.out, "time_limit")) << status.out;
 }
 
+/// What a node without a limit wants is made, although another node that wants the same has one.
+TEST_F(Runs, LimitNoNodeBySharingItsResult) {
+  folder_.write("shared.xml", R"(<experiment coppice="1" name="shared">
+  <problem id="car"><car_on_the_hill/></problem>
+  <policy id="random"><random/></policy>
+  <evaluate id="short" problem="car" policies="random" episodes="3000" time_limit="1 ms" memory_limit="1 MB"/>
+  <evaluate id="free" problem="car" policies="random" episodes="3000"/>
+  <table id="t" of="free"/>
+</experiment>)");
+  const Ended ended = run("shared.xml");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(run("shared.xml").status, 0);
+}
+
 TEST_F(Runs, StopWhenToldToAndGoOnLater) {
   ASSERT_EQ(run("long.xml -j 1 --out whole").status, 0);
   const Ended ended = script(
