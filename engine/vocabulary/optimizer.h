@@ -50,7 +50,8 @@ class Search {
   virtual std::string stop_reason() const = 0;
   /// Values for the history ("sigma", "restarts"), in the order of Optimizer::measures.
   virtual std::vector<double> measures() const { return {}; }
-  /// Everything that it needs to go on bit-identically in a new process; between tell and ask.
+  /// Everything that it needs to go on bit-identically in a new process, at any time. Candidates that were
+  /// asked for and whose values were not told are asked for again after load.
   virtual void save(Archive& archive) const = 0;
   virtual void load(Archive& archive) = 0;
 };

@@ -117,6 +117,15 @@ class BayesianSearch : public Generations {
     save_number(archive, "noise", process_.kernel().noise);
     archive.put("gains", hedge_.gains());
     save_integer(archive, "next_tuning", static_cast<std::int64_t>(next_tuning_));
+    std::vector<double> proposals;
+    std::vector<std::int64_t> proposing;  // acquisitions that made one
+    for (std::size_t arm = 0; arm < proposals_.size(); ++arm) {
+      if (proposals_[arm].empty()) continue;
+      proposing.push_back(static_cast<std::int64_t>(arm));
+      proposals.insert(proposals.end(), proposals_[arm].begin(), proposals_[arm].end());
+    }
+    archive.put("proposals", proposals);
+    archive.put("proposing", proposing);
   }
   void load_method(Archive& archive) override {
     values_ = archive.get<std::vector<double>>("told");
@@ -132,6 +141,7 @@ class BayesianSearch : public Generations {
     }
     hedge_.set_gains(load_numbers(archive, "gains", kArms));
     next_tuning_ = static_cast<std::size_t>(load_integer(archive, "next_tuning"));
+    load_proposals(archive);
     if (values_.empty()) return;
     process_.set_values(finite_values());
     find_incumbent();
@@ -147,6 +157,20 @@ class BayesianSearch : public Generations {
   };
 
   std::size_t size() const { return process_.size(); }
+
+  void load_proposals(const Archive& archive) {
+    const auto& proposing = archive.get<std::vector<std::int64_t>>("proposing");
+    const std::vector<double> points = load_numbers(archive, "proposals", proposing.size() * dimension());
+    proposals_.assign(proposing.empty() ? 0 : kArms, {});
+    for (std::size_t i = 0; i < proposing.size(); ++i) {
+      if (proposing[i] < 0 || proposing[i] >= static_cast<std::int64_t>(kArms)) {
+        throw std::runtime_error("search: not an acquisition");
+      }
+      const auto point = points.begin() + static_cast<std::ptrdiff_t>(i * dimension());
+      proposals_[static_cast<std::size_t>(proposing[i])].assign(
+          point, point + static_cast<std::ptrdiff_t>(dimension()));
+    }
+  }
 
   std::vector<double> in_unit(std::span<const double> x) const {
     std::vector<double> unit(x.size());

@@ -17,7 +17,7 @@ constexpr double kHopeless = 1e-2;
 /// What is drawn outside the box is drawn again (tutorial, B.5) while the distribution is wide, since there
 /// mirrored points tell nothing of their surroundings; when it is narrow they do, and reach optima on the
 /// border sooner.
-constexpr int kAttempts = 10;
+constexpr int kAttempts = 30;
 constexpr double kWide = 0.1;  // of the first sigma
 /// The deviation falls so far in about n generations only about one optimum, not among many.
 constexpr double kConverging = 0.1;

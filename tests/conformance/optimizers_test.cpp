@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/golden.h"
+#include "tests/support/random_tasks.h"
 #include "tests/support/search.h"
 
 namespace coppice {
@@ -13,55 +14,13 @@ class Optimizers : public testing::TestWithParam<std::string> {
   const Sub<Optimizer> optimizer_ = make_for_golden<Optimizer>(GetParam());
 };
 
-/// A box of 2 to 5 sides of different sizes, a guess or none, a budget.
-SearchTask random_task(std::uint64_t number) {
-  const Draws draws = Draws(2017, "optimizers", 0).scenario(number);
-  SearchTask task;
-  const std::uint64_t n = 2 + draws.below("n", 4);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const double low = draws.normal("low", 0, 10, i);
-    const double width = elementary::exp(draws.uniform("width", -6, 6, i));
-    task.box.push_back({"x" + std::to_string(i), "", low, low + width});
-    if (number % 2 == 0) task.guess.push_back(draws.uniform("guess", low, low + width, i));
-  }
-  task.budget = 30 + static_cast<std::int64_t>(draws.below("budget", 100));
-  task.noisy = number % 3 == 0;
-  task.draws = draws.fork("search");
-  return task;
-}
-
-/// The optimum may lie outside; some values are NaN or infinite.
-double awkward_value(const SearchTask& task, std::span<const double> x, std::uint64_t number,
-                     std::uint64_t scenario) {
-  const Draws draws = Draws(7, "values", number).scenario(scenario);
-  double value = task.noisy ? draws.normal("noise", 0, 0.1) : 0;
-  for (std::uint32_t i = 0; i < x.size(); ++i) {
-    const Axis& axis = task.box[i];
-    const double z =
-        (x[i] - axis.low) / (axis.high - axis.low) - draws.scenario(0).uniform("optimum", -0.3, 1.3, i);
-    value -= z * z;
-  }
-  if (number % 5 == 1 && value < -1) return std::numeric_limits<double>::quiet_NaN();
-  if (number % 5 == 2 && value < -1) return -std::numeric_limits<double>::infinity();
-  if (number % 50 == 3 && value > -0.01) return std::numeric_limits<double>::infinity();
-  return value;
-}
-
 TEST_P(Optimizers, StayInsideTheBoxAndTheBudgetOnRandomProblems) {
   const std::uint64_t problems = optimizer_.resolved.name == "bayesian" ? 10 : 300;
   for (std::uint64_t number = 0; number < problems; ++number) {
     SCOPED_TRACE(number);
     const SearchTask task = random_task(number);
-    const std::unique_ptr<Search> search = optimizer_->start(task);
-    const SearchRecord record =
-        run_search(*search, task, 7, [&](std::span<const double> x, std::uint64_t scenario) {
-          return awkward_value(task, x, number, scenario);
-        });
-    ASSERT_EQ(record.outside, 0u);
-    ASSERT_LE(record.values.size(), static_cast<std::size_t>(task.budget));
-    ASSERT_FALSE(search->stop_reason().empty());
-    ASSERT_TRUE(is_inside(task.box, search->best()));
-    ASSERT_EQ(search->measures().size(), optimizer_->measures().size());
+    expect_sound_search(*optimizer_, task, number);
+    if (HasFailure()) return;
   }
 }
 
@@ -86,6 +45,43 @@ TEST_P(Optimizers, AskTheSameInPiecesOfAnySizeAndAfterResuming) {
     }
     EXPECT_EQ(pieces.points, expected.points);
     EXPECT_EQ(pieces.scenarios, expected.scenarios);
+    EXPECT_EQ(search->stop_reason(), whole->stop_reason());
+    EXPECT_EQ(search->best(), whole->best());
+  }
+}
+
+// A run that is stopped while candidates are evaluated loses their values, and evaluates them again.
+TEST_P(Optimizers, AskAgainForWhatWasAskedWhenSavedBeforeItIsTold) {
+  for (std::uint64_t number = 0; number < 6; ++number) {
+    SCOPED_TRACE(number);
+    SearchTask task = random_task(number);
+    task.budget = std::min<std::int64_t>(task.budget, 80);
+    const auto value = [&](std::span<const double> x, std::uint64_t scenario) {
+      return awkward_value(task, x, number, scenario);
+    };
+    const std::unique_ptr<Search> whole = optimizer_->start(task);
+    const SearchRecord expected = run_search(*whole, task, 4, value);
+    std::unique_ptr<Search> search = optimizer_->start(task);
+    SearchRecord record;
+    for (bool more = true; more;) {
+      const Candidates lost = search->ask(3);
+      Archive archive;
+      search->save(archive);
+      Archive read = Archive::from_bytes(archive.bytes());
+      search = optimizer_->start(task);
+      search->load(read);
+      const std::size_t before = record.points.size();
+      more = run_search_step(*search, task, 3, value, record);
+      ASSERT_EQ(record.points.size() - before, lost.points.rows());
+      std::vector<double> x(task.box.size());
+      for (std::size_t i = 0; i < lost.points.rows(); ++i) {
+        lost.points.row(i, x);
+        EXPECT_EQ(record.points[before + i], x);
+        EXPECT_EQ(record.scenarios[before + i], lost.scenarios[i]);
+      }
+    }
+    EXPECT_EQ(record.points, expected.points);
+    EXPECT_EQ(record.scenarios, expected.scenarios);
     EXPECT_EQ(search->stop_reason(), whole->stop_reason());
     EXPECT_EQ(search->best(), whole->best());
   }
