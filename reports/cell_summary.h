@@ -21,8 +21,8 @@ struct CellSummary {
 /// over units, and over the episodes of each run where they were kept.
 enum class IntervalMethod { t, bootstrap };
 
-/// `nodes` are evaluations.
+/// `nodes` are evaluations; `better` as estimate has it.
 CellSummary summarize(const std::vector<InputNode>& nodes, const TableCell& cell, Metric metric,
-                      IntervalMethod method = IntervalMethod::t);
+                      std::optional<Better> better = {}, IntervalMethod method = IntervalMethod::t);
 
 }  // namespace coppice

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -84,15 +86,30 @@ std::vector<std::string> values_of(const Entry& entry, const std::vector<std::st
   return values;
 }
 
-/// Text, unless every key is the canonical text of a number.
+/// Its value, where a text is a number however it is spelled ("0.50", "1e3"); nothing where it would lose
+/// what it says: digits beyond a double's, or zeros in front, as names have them ("007").
+std::optional<double> number_of_key(const std::string& text) {
+  const std::optional<double> value = parse_number(text);
+  if (!value) return std::nullopt;
+  const std::size_t first = text.find_first_of("0123456789");
+  if (text[first] == '0' && first + 1 < text.size() && std::isdigit(text[first + 1])) return std::nullopt;
+  constexpr double kLargestExact = 0x1p53;
+  const bool digits_only = text.find_first_not_of("+-0123456789") == std::string::npos;
+  if (digits_only && std::fabs(*value) > kLargestExact && cell_text(*value) != text) return std::nullopt;
+  return value;
+}
+
+/// Text, unless every key is a number, and different texts are different numbers.
 ColumnInfo::Type type_of_keys(const std::vector<TableCell>& cells, std::size_t key) {
   bool integers = true;
+  std::map<double, std::string> texts;
   for (const TableCell& cell : cells) {
     const std::string& text = cell.keys[key];
     if (text.empty()) continue;
-    const std::optional<double> value = parse_number(text);
-    if (!value || cell_text(*value) != text) return ColumnInfo::Type::text;
-    integers = integers && text.find_first_not_of("-0123456789") == std::string::npos;
+    const std::optional<double> value = number_of_key(text);
+    if (!value || texts.try_emplace(*value, text).first->second != text) return ColumnInfo::Type::text;
+    integers = integers && cell_text(*value).find_first_not_of("-0123456789") == std::string::npos &&
+               std::fabs(*value) < 0x1p63;
   }
   return integers ? ColumnInfo::Type::integer : ColumnInfo::Type::number;
 }
@@ -162,9 +179,7 @@ void add_key_columns(Table& table, const TableKeys& keys, const std::vector<Tabl
   for (std::size_t k = 0; k < names.size(); ++k) {
     const ColumnInfo::Type type = type_of_keys(cells, k);
     const bool of_row = k < keys.rows.size();
-    const auto with_unit = [k](const TableCell& cell) {
-      return k < cell.units.size() && !cell.units[k].empty();
-    };
+    const auto with_unit = [k](const TableCell& cell) { return !cell.unit(k).empty(); };
     const auto cell = std::find_if(cells.begin(), cells.end(), with_unit);
     table.columns.push_back({names[k], type, cell == cells.end() ? "" : cell->units[k],
                              of_row ? "Key of the row." : "Key of the column."});
@@ -184,11 +199,24 @@ std::string key_column(const Table& table, const std::string& key) {
   return table.has(kRenamed + key) ? kRenamed + key : key;
 }
 
-bool same_key(std::string_view a, std::string_view b) {
-  if (a == b) return true;
-  const std::optional<Quantity> x = parse_quantity(a), y = parse_quantity(b);
-  if (!x || !y || x->value != y->value) return false;
-  const Dimension plain{};  // labels are in SI units without saying so
+void refuse_replicates(const NodeOptions& node) {
+  if (!node.replicates) return;
+  throw std::invalid_argument(
+      "replicates: this node takes all replicates of what it shows and makes one file; leave it out");
+}
+
+bool fits_unit(std::string_view text, std::string_view unit) {
+  const std::optional<Quantity> given = parse_quantity(text);
+  const std::optional<Quantity> key = parse_unit(unit);
+  const Dimension plain{};
+  return unit.empty() || !given || !key || given->dimension == plain || given->dimension == key->dimension;
+}
+
+bool same_key(std::string_view text, std::string_view key, std::string_view unit) {
+  if (text == key) return true;
+  const std::optional<Quantity> x = parse_quantity(text), y = parse_quantity(key);
+  if (!x || !y || x->value != y->value || !fits_unit(text, unit)) return false;
+  const Dimension plain{};  // plain numbers are in SI units without saying so
   return x->dimension == y->dimension || x->dimension == plain || y->dimension == plain;
 }
 

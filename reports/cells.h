@@ -34,6 +34,8 @@ struct TableCell {
   std::vector<std::string> keys;  ///< one for each of TableKeys::all(); empty where entries have no such name
   std::vector<std::size_t> entries;     ///< replicates of one and the same thing
   std::vector<std::string> units = {};  ///< SI units of the keys; empty where they are no quantities
+
+  std::string unit(std::size_t key) const { return key < units.size() ? units[key] : std::string(); }
 };
 
 /// Sorts entries into cells; these stand in the order in which their row's keys appear first, then their
@@ -50,7 +52,14 @@ void rename_taken_keys(Table& table, std::size_t keys);
 /// The name that the key's column has in such a table.
 std::string key_column(const Table& table, const std::string& key);
 
-/// Equal texts, or equal numbers; "10 deg" and 0.174... are the same angle.
-bool same_key(std::string_view a, std::string_view b);
+/// A table or figure shows all replicates of what it is of; it throws std::invalid_argument when it is to
+/// have some of its own, which would be as many equal ones, or a part of what there is in each.
+void refuse_replicates(const NodeOptions& node);
+
+/// True unless the text is a quantity of another dimension than a key in this SI unit ("": none is known).
+bool fits_unit(std::string_view text, std::string_view unit);
+/// Whether a text means a key that has this unit: equal texts, or equal numbers; "10 deg" and 0.174... are
+/// the same angle.
+bool same_key(std::string_view text, std::string_view key, std::string_view unit = {});
 
 }  // namespace coppice

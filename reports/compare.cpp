@@ -32,6 +32,7 @@ struct CompareNode : Node {
   std::vector<std::string> within;
   std::string baseline;
   Metric metric = Metric::cost;
+  Direction better = Direction::automatic;
 
   std::vector<std::string> makes() const override { return {"table", "timing"}; }
   bool gathers(std::string_view) const override { return true; }
@@ -39,7 +40,10 @@ struct CompareNode : Node {
   bool random() const override { return false; }
   std::string published_in() const override { return "tables"; }
 
-  void check(const NodeContext& context) const override { arranged(context); }
+  void check(const NodeContext& context) const override {
+    refuse_replicates(*this);
+    arranged(context);
+  }
 
   void run(NodeContext& context) const override {
     const std::vector<InputNode>& nodes = context.inputs("of");
@@ -49,7 +53,7 @@ struct CompareNode : Node {
     std::vector<Comparison> comparisons;
     std::vector<double> p_values;
     for (const Pair& pair : what.pairs) {
-      comparisons.push_back(compare(sides[pair.first], sides[pair.second], metric));
+      comparisons.push_back(compare(sides[pair.first], sides[pair.second], require_better(metric, better)));
       p_values.push_back(comparisons.back().p_value);
     }
     const std::vector<double> adjusted = holm_adjusted(p_values);
@@ -79,7 +83,10 @@ struct CompareNode : Node {
             "baseline", &This::baseline, "",
             "Compare everything with this one only (several columns: values separated by ', '); empty: every "
             "pair.")
-        .choice("metric", &This::metric, metric_names(), "What is compared.");
+        .choice("metric", &This::metric, metric_names(), "What is compared.")
+        .choice("better", &This::better, direction_names(),
+                "Which values are good; auto: high returns, low costs. steps and terminal_rate have none of "
+                "their own.");
   }
 
  private:
@@ -91,13 +98,18 @@ struct CompareNode : Node {
   bool is_baseline(const TableCell& cell) const {
     if (name(cell) == baseline) return true;
     const std::vector<std::string_view> items = split_list(baseline);
-    const auto first = cell.keys.begin() + static_cast<std::ptrdiff_t>(within.size());
-    return std::equal(first, cell.keys.end(), items.begin(), items.end(), same_key);
+    if (items.size() != by.size()) return false;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const std::size_t key = within.size() + i;
+      if (!same_key(items[i], cell.keys[key], cell.unit(key))) return false;
+    }
+    return true;
   }
 
   Arrangement arranged(const NodeContext& context) const {
     Arrangement what;
     require_metric(context.inputs("of"), metric);
+    require_better(metric, better);
     what.cells = arrange(entries_of(context.inputs("of")), {within, by, "by and within"});
     std::vector<std::string> names;
     const auto group = [&](std::size_t i) {
@@ -151,7 +163,7 @@ struct CompareNode : Node {
         {"improvement_ci95_high", Type::number, "", "Upper end of that interval."},
         {"method", Type::text, "",
          "paired runs: replicate by replicate; paired episodes: scenario by scenario; Welch: independent "
-         "samples."},
+         "samples; Newcombe: independent shares."},
         {"caution", Type::text, "", "Why the interval may cover less than 95 %; else empty."}};
     all.insert(all.end(), values.begin(), values.end());
     return all;
@@ -166,8 +178,8 @@ struct CompareNode : Node {
     row.emplace_back(c.episodes);
     row.emplace_back(c.mean_first);
     row.emplace_back(c.mean_second);
-    row.emplace_back(c.difference.mean);
-    add_interval(confidence_interval(c.difference));
+    row.emplace_back(c.difference);
+    add_interval(c.ci95);
     row.emplace_back(c.p_value);
     row.emplace_back(adjusted);
     row.emplace_back(c.improvement.probability);
@@ -180,7 +192,7 @@ struct CompareNode : Node {
 const Component<Node, CompareNode> kComponent(
     "compare",
     "Compare evaluated policies two by two: difference with interval, p-value, who is likely better.",
-    "Welch 1947; Holm 1979; Agarwal et al. 2021 (probability of improvement)", 3);
+    "Welch 1947; Newcombe 1998 (shares); Holm 1979; Agarwal et al. 2021 (probability of improvement)", 4);
 
 }  // namespace
 }  // namespace coppice

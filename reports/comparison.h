@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/statistics/comparisons.h"
-#include "engine/statistics/mean_estimate.h"
+#include "engine/statistics/shares.h"
 #include "reports/cells.h"
 #include "reports/metric.h"
 
@@ -15,9 +15,10 @@ struct Side {
   bool are_runs = false;                       ///< as Units::are_runs; else its unit is the episode
   std::vector<std::optional<int>> replicates;  ///< of each run
   std::vector<double> means;                   ///< of each run
-  std::vector<double> episodes;  ///< not of runs: the value of each episode, where they were kept
-  std::string stream;            ///< of the evaluation's scenarios
-  Observation last;              ///< of its last evaluation
+  std::vector<double> episodes;        ///< not of runs: the value of each episode, where they were kept
+  std::string stream;                  ///< of the evaluation's scenarios
+  Observation last;                    ///< of its last evaluation
+  std::optional<ShareEstimate> share;  ///< of a metric that is a share
 };
 Side read_side(const std::vector<InputNode>& nodes, const TableCell& cell, Metric metric);
 
@@ -26,7 +27,8 @@ struct Comparison {
   std::size_t replicates = 1;
   std::int64_t episodes = 0;
   double mean_first = 0, mean_second = 0;
-  MeanEstimate difference;
+  double difference = 0;
+  std::optional<Interval> ci95;  ///< of the difference
   double p_value = 0;
   Improvement improvement;
   std::string method;
@@ -35,6 +37,6 @@ struct Comparison {
 
 /// Pairs replicates where both have the same, and scenarios where neither has any; else the samples count as
 /// independent.
-Comparison compare(const Side& first, const Side& second, Metric metric);
+Comparison compare(const Side& first, const Side& second, Better better);
 
 }  // namespace coppice

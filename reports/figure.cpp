@@ -6,6 +6,7 @@
 #include "engine/data/file_system.h"
 #include "engine/graph/artifacts.h"
 #include "registry/suggest.h"
+#include "reports/cells.h"
 #include "reports/figure_data.h"
 #include "reports/figure_table.h"
 #include "reports/vega_lite.h"
@@ -31,6 +32,7 @@ struct FigureNode : Node {
   std::string x, y = "cost";
   std::vector<std::string> by;
   std::optional<std::int64_t> bins;
+  Direction better = Direction::automatic;
 
   std::vector<std::string> makes() const override { return {"figure"}; }
   bool gathers(std::string_view) const override { return true; }
@@ -40,7 +42,8 @@ struct FigureNode : Node {
 
   void check(const NodeContext& context) const override {
     const std::vector<InputNode>& nodes = context.inputs("of");
-    if (kind != FigureKind::line && !x.empty()) throw std::invalid_argument("only a line has an x");
+    refuse_replicates(*this);
+    check_kind();
     const Source source = source_of(nodes);
     if (source != Source::datasets && !observations.empty()) {
       throw std::invalid_argument("observations lie beside lines of datasets only");
@@ -52,6 +55,8 @@ struct FigureNode : Node {
       check_datasets(context.inputs("observations"));
     } else {
       require_metric(nodes, metric());
+      if (kind == FigureKind::profile) require_better(metric(), better);
+      if (kind == FigureKind::profile || kind == FigureKind::histogram) check_episodes(nodes);
       if (kind == FigureKind::line && (x.empty() || is_time(x))) {
         throw std::invalid_argument(
             "give x, a column of a sweep; only learning nodes have a course over iterations or time");
@@ -98,7 +103,10 @@ struct FigureNode : Node {
         .add("by", &This::by, "", "What tells lines apart: columns of sweeps, problem, policy, node.")
         .automatic("bins", &This::bins, "",
                    "Bins of a histogram; auto: the Freedman-Diaconis rule, whole widths for whole numbers.",
-                   between(1, 10000));
+                   between(1, 10000))
+        .choice("better", &This::better, direction_names(),
+                "Of a profile: which values are good; auto: high returns, low costs. steps and terminal_rate "
+                "have none of their own.");
   }
 
  private:
@@ -117,6 +125,15 @@ struct FigureNode : Node {
           "of: learning nodes, datasets and what has metrics do not go into one figure");
     }
     return source;
+  }
+
+  /// That nothing is given which this kind of figure would not heed.
+  void check_kind() const {
+    if (kind != FigureKind::line && !x.empty()) throw std::invalid_argument("only a line has an x");
+    if (kind != FigureKind::histogram && bins) throw std::invalid_argument("only a histogram has bins");
+    if (kind != FigureKind::profile && better != Direction::automatic) {
+      throw std::invalid_argument("better: only of a profile does it matter which values are good");
+    }
   }
 
   std::vector<InputNode> drawn(const NodeContext& context) const {
@@ -146,6 +163,15 @@ struct FigureNode : Node {
       };
       if (!is_time(x)) check("x", learning_x());
       check("y", y);
+    }
+  }
+
+  /// That episodes were kept where these are the units.
+  static void check_episodes(const std::vector<InputNode>& nodes) {
+    for (const InputNode& node : nodes) {
+      if (node.replicate || !node.training.empty() || node.element.get("returns") != "false") continue;
+      throw std::invalid_argument(fmt::format(
+          "'{}' does not keep the episodes that this figure counts (returns=\"false\")", node.id));
     }
   }
 
@@ -192,7 +218,7 @@ struct FigureNode : Node {
       case FigureKind::histogram:
         return histogram_table(inputs, metric(), static_cast<std::size_t>(bins.value_or(0)));
       case FigureKind::profile:
-        return profile_table(inputs, metric());
+        return profile_table(inputs, metric(), require_better(metric(), better));
       case FigureKind::line:
       case FigureKind::interval:
         break;
@@ -203,7 +229,7 @@ struct FigureNode : Node {
 
 const Component<Node, FigureNode> kComponent(
     "figure", "Make a figure: tidy data, and a Vega-Lite specification that draws it.",
-    "Agarwal et al. 2021 (performance profiles)", 4);
+    "Agarwal et al. 2021 (performance profiles)", 5);
 
 }  // namespace
 }  // namespace coppice

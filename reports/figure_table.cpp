@@ -143,7 +143,7 @@ Table histogram_table(const FigureInputs& inputs, Metric metric, std::size_t bin
   return table;
 }
 
-Table profile_table(const FigureInputs& inputs, Metric metric) {
+Table profile_table(const FigureInputs& inputs, Metric metric, Better better) {
   constexpr std::size_t kThresholds = 100;
   Table table;
   table.columns = inputs.keys.columns;
@@ -154,7 +154,7 @@ Table profile_table(const FigureInputs& inputs, Metric metric) {
   const std::vector<std::vector<double>> groups = values_of(inputs, metric);
   const std::vector<double> thresholds = bin_ends(joined(groups), kThresholds);
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    for (const ProfilePoint& point : performance_profile(groups[i], thresholds, better(metric))) {
+    for (const ProfilePoint& point : performance_profile(groups[i], thresholds, better)) {
       std::vector<Cell>& row = add_row(table, inputs, i);
       row.insert(row.end(), {point.threshold, point.share, point.ci95.low, point.ci95.high});
     }

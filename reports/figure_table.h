@@ -30,7 +30,7 @@ Table interval_table(const FigureInputs& inputs, Metric metric);
 Table histogram_table(const FigureInputs& inputs, Metric metric, std::size_t bins);
 
 /// The share of runs, or episodes, that are better than each of a hundred thresholds.
-Table profile_table(const FigureInputs& inputs, Metric metric);
+Table profile_table(const FigureInputs& inputs, Metric metric, Better better);
 
 /// The columns that an x of learning_table cannot have the name of.
 const std::vector<std::string>& estimate_column_names();

@@ -8,6 +8,7 @@
 #include "registry/error.h"
 #include "registry/suggest.h"
 #include "registry/text.h"
+#include "registry/units.h"
 
 namespace coppice {
 
@@ -48,6 +49,7 @@ KnownValues::KnownValues(const std::string& file, const TableKeys& keys, const s
                                   names.empty() ? "keys to the table and columns for them to the file"
                                                 : "a column " + join(names, " or ")));
   }
+  check_units(file, keys, cells);
   bool any = table_.rows.empty();
   for (const TableCell& cell : cells) {
     int found = 0;
@@ -58,9 +60,26 @@ KnownValues::KnownValues(const std::string& file, const TableKeys& keys, const s
   if (!any) throw ConfigError(fmt::format("{}: none of its rows is about any cell of the table", file));
 }
 
+void KnownValues::check_units(const std::string& file, const TableKeys& keys,
+                              const std::vector<TableCell>& cells) const {
+  for (std::size_t k = 0; k < columns_.size(); ++k) {
+    if (!columns_[k]) continue;
+    for (const TableCell& cell : cells) {
+      for (const std::vector<Cell>& row : table_.rows) {
+        const std::string text = cell_text(row[*columns_[k]]);
+        if (fits_unit(text, cell.unit(k))) continue;
+        throw ConfigError(fmt::format("{}: '{}' is {}, and the key '{}' is {}", file, text,
+                                      dimension_text(parse_quantity(text)->dimension), keys.all()[k],
+                                      dimension_text(parse_unit(cell.unit(k))->dimension)));
+      }
+    }
+  }
+}
+
 bool KnownValues::matches(std::size_t row, const TableCell& cell) const {
   for (std::size_t k = 0; k < columns_.size(); ++k) {
-    if (columns_[k] && !same_key(cell_text(table_.rows[row][*columns_[k]]), cell.keys[k])) return false;
+    if (columns_[k] && !same_key(cell_text(table_.rows[row][*columns_[k]]), cell.keys[k], cell.unit(k)))
+      return false;
   }
   return true;
 }

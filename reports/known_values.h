@@ -16,13 +16,15 @@ class KnownValues {
  public:
   KnownValues() = default;  ///< knows nothing
   /// Throws ConfigError naming the file: for other columns (with the nearest), for a value that is no number,
-  /// for several rows without a key, and when no row is about any of the cells, or two are about the same.
+  /// for a key of another dimension, for several rows without a key, and when no row is about any of the
+  /// cells, or two are about the same.
   KnownValues(const std::string& file, const TableKeys& keys, const std::vector<TableCell>& cells);
 
   /// The value for a cell; NaN when there is none.
   double find(const TableCell& cell) const;
 
  private:
+  void check_units(const std::string& file, const TableKeys& keys, const std::vector<TableCell>& cells) const;
   bool matches(std::size_t row, const TableCell& cell) const;
 
   Table table_;

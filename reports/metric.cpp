@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "engine/data/table_file.h"
@@ -21,7 +22,7 @@ struct Source {
   const char* skewness;
   const char* returns;  ///< of each episode: column of returns.csv
   double sign;
-  Better better;
+  std::optional<Better> better;  ///< nothing: depends on what the end of an episode means
   const char* doc;
   bool of_fit = false;
 };
@@ -32,9 +33,9 @@ constexpr std::array<Source, 9> kSources = {{
      "discounted_return", 1, Better::higher, "discounted return"},
     {"discounted_cost", "mean_discounted_return", "sd_discounted_return", "skewness_discounted_return",
      "discounted_return", -1, Better::lower, "discounted cost (minus the discounted sum of rewards)"},
-    {"steps", "mean_steps", "sd_steps", "skewness_steps", "steps", 1, Better::lower,
+    {"steps", "mean_steps", "sd_steps", "skewness_steps", "steps", 1, std::nullopt,
      "number of steps of an episode"},
-    {"terminal_rate", "terminal_rate", nullptr, nullptr, "terminal", 1, Better::lower,
+    {"terminal_rate", "terminal_rate", nullptr, nullptr, "terminal", 1, std::nullopt,
      "share of episodes that end in a terminal state"},
     {"rmse", "rmse", nullptr, nullptr, nullptr, 1, Better::lower, "root mean squared error", true},
     {"r2", "r2", nullptr, nullptr, nullptr, 1, Better::higher, "share of the variance that is explained",
@@ -59,12 +60,25 @@ Observation observe_fit(const InputNode& node, const Source& from) {
   return seen;
 }
 
+/// Of n zeros and ones, as standard_deviation and sample_skewness have it.
+Moments moments_of_share(double n, double share) {
+  const double squares = share * (1 - share);
+  if (!(squares > 0)) return {n, share, n < 2 ? std::numeric_limits<double>::quiet_NaN() : 0, 0};
+  const double deviation = std::sqrt(squares * n / (n - 1));
+  const double cubes = squares * (1 - 2 * share) / (deviation * deviation * deviation);
+  return {n, share, deviation, cubes * n * n / ((n - 1) * (n - 2))};
+}
+
 }  // namespace
 
 std::vector<std::string> metric_names() {
   std::vector<std::string> names;
   for (const Source& metric : kSources) names.emplace_back(metric.name);
   return names;
+}
+
+bool is_share(Metric metric) {
+  return metric == Metric::terminal_rate;
 }
 
 std::string metric_doc(Metric metric) {
@@ -81,8 +95,21 @@ void require_metric(const std::vector<InputNode>& nodes, Metric metric) {
   }
 }
 
-Better better(Metric metric) {
-  return source(metric).better;
+std::vector<std::string> direction_names() {
+  return {"auto", "higher", "lower"};
+}
+
+std::optional<Better> better(Metric metric, Direction given) {
+  if (given == Direction::automatic) return source(metric).better;
+  return given == Direction::higher ? Better::higher : Better::lower;
+}
+
+Better require_better(Metric metric, Direction given) {
+  if (const std::optional<Better> known = better(metric, given)) return *known;
+  throw std::invalid_argument(
+      fmt::format("better: whether a high or a low {} is good depends on what the end of an episode means; "
+                  "give better=\"higher\" or better=\"lower\"",
+                  source(metric).name));
 }
 
 Observation observe(const InputNode& node, Metric metric) {
@@ -95,13 +122,12 @@ Observation observe(const InputNode& node, Metric metric) {
   Observation seen;
   seen.episodes = static_cast<std::int64_t>(n);
   seen.mean = from.sign * value(from.mean);
-  if (from.sd != nullptr) {
-    seen.skewness = from.sign * value(from.skewness);
-    seen.error = mean_estimate(n, seen.mean, value(from.sd), seen.skewness);
-    seen.ci95 = confidence_interval(seen.error);
-  } else {
-    seen.error = mean_estimate(n, seen.mean, std::sqrt(seen.mean * (1 - seen.mean) * n / (n - 1)), 0);
+  if (is_share(metric)) {
+    seen.moments = moments_of_share(n, seen.mean);
     seen.ci95 = share_interval(seen.mean, n);
+  } else {
+    seen.moments = {n, seen.mean, value(from.sd), from.sign * value(from.skewness)};
+    seen.ci95 = confidence_interval(mean_estimate(seen.moments));
   }
   return seen;
 }

@@ -22,6 +22,7 @@ struct TableNode : Node {
   References of;
   std::vector<std::string> rows, columns;
   Metric metric = Metric::cost;
+  Direction better = Direction::automatic;
   IntervalMethod interval = IntervalMethod::t;
   FilePath published, reference_file;
   std::optional<double> reference;
@@ -37,7 +38,10 @@ struct TableNode : Node {
       throw std::invalid_argument("give either reference, a number, or reference_file");
     }
   }
-  void check(const NodeContext& context) const override { cells_and_values(context); }
+  void check(const NodeContext& context) const override {
+    refuse_replicates(*this);
+    cells_and_values(context);
+  }
 
   void run(NodeContext& context) const override {
     const Content content = cells_and_values(context);
@@ -48,7 +52,8 @@ struct TableNode : Node {
     for (std::size_t i = 0; i < content.cells.size(); ++i) {
       const TableCell& cell = content.cells[i];
       const double target = reference ? *reference : content.references.find(cell);
-      add_values(table.rows[i], summarize(context.inputs("of"), cell, metric, interval),
+      add_values(table.rows[i],
+                 summarize(context.inputs("of"), cell, metric, coppice::better(metric, better), interval),
                  content.published.find(cell), target);
     }
     write_table(context.folder() / kTableFile, table);
@@ -63,6 +68,9 @@ struct TableNode : Node {
         .add("columns", &This::columns, "", "What tells the columns apart, likewise.")
         .choice("metric", &This::metric, metric_names(),
                 "What is shown; rmse, r2 and leaves are of fits, on their test set where they have one.")
+        .choice("better", &This::better, direction_names(),
+                "Which values are good; auto: high returns, low costs. steps and terminal_rate have none of "
+                "their own: without it worst and best stay empty, and there is no reference.")
         .choice(
             "interval", &This::interval, {"t", "bootstrap"},
             "Interval of the mean: Student's, wider where values are skewed; or the studentized bootstrap "
@@ -83,6 +91,7 @@ struct TableNode : Node {
 
   Content cells_and_values(const NodeContext& context) const {
     require_metric(context.inputs("of"), metric);
+    if (reference || !reference_file.path.empty()) require_better(metric, better);
     const TableKeys keys{rows, columns};
     Content content;
     content.cells = arrange(entries_of(context.inputs("of")), keys);
@@ -103,8 +112,8 @@ struct TableNode : Node {
          "of a policy that was not learned."},
         {"ci95_high", Type::number, "", "Upper end of that interval."},
         {"iqm", Type::number, "", "Interquartile mean of the replicates."},
-        {"worst", Type::number, "", "Worst replicate."},
-        {"best", Type::number, "", "Best replicate."},
+        {"worst", Type::number, "", "Worst replicate; empty unless it is known which values are good."},
+        {"best", Type::number, "", "Best replicate, likewise."},
         {"published", Type::number, "", "Published value."},
         {"reference", Type::number, "", "Best value known, or near the optimum."},
         {"optimality_gap", Type::number, "",
@@ -127,8 +136,9 @@ struct TableNode : Node {
     row.emplace_back(estimate.best);
     row.emplace_back(known);
     row.emplace_back(target);
-    row.emplace_back(std::isnan(target) ? target
-                                        : optimality_gap(summary.replicates, target, better(metric)));
+    row.emplace_back(std::isnan(target)
+                         ? target
+                         : optimality_gap(summary.replicates, target, require_better(metric, better)));
     add_interval(row, summary.iqm_ci95);
     row.push_back(summary.caution.empty() ? Cell() : Cell(summary.caution));
   }
@@ -140,7 +150,7 @@ struct TableNode : Node {
 
 const Component<Node, TableNode> kComponent(
     "table", "Summarize evaluations: mean, interval, interquartile mean, worst and best of replicates.",
-    "Agarwal et al. 2021 (interquartile mean, optimality gap)", 5);
+    "Agarwal et al. 2021 (interquartile mean, optimality gap)", 6);
 
 }  // namespace
 }  // namespace coppice

@@ -35,6 +35,7 @@ struct TimingsNode : Node {
   std::string published_in() const override { return "figures"; }
 
   void check(const NodeContext& context) const override {
+    refuse_replicates(*this);
     arrange(entries_of(context.inputs("of")), {rows, columns});
   }
 

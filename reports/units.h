@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/statistics/shares.h"
 #include "reports/cells.h"
 #include "reports/metric.h"
 
@@ -21,10 +22,16 @@ struct Run {
 struct Units {
   std::vector<Run> runs;  ///< by their first appearance; without replicates one, if nothing was learned
   bool are_runs = false;  ///< false: the unit is the episode
+  bool learned = false;   ///< false: runs are repetitions of what does not differ
   Observation last;       ///< of the last evaluation
 };
 
 /// `nodes` are evaluations.
 Units units_of(const std::vector<InputNode>& nodes, const TableCell& cell, Metric metric);
+
+std::vector<double> means_of(const Units& units);  ///< of the runs
+/// For a metric that is a share: over training runs; of what was not learned, over the episodes of all
+/// repetitions together.
+ShareEstimate share_of(const Units& units);
 
 }  // namespace coppice

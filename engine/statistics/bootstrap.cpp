@@ -7,8 +7,6 @@
 namespace coppice {
 namespace {
 
-constexpr std::size_t kFewestUnits = 10;  // of fewer, too many resamples do not vary at all
-
 /// The quantile of sorted values at position p (n + 1), as for order statistics of a continuous sample.
 double order_quantile(const std::vector<double>& sorted, double p) {
   const double position =
@@ -54,7 +52,7 @@ std::optional<Interval> bootstrap_interval(const std::vector<std::vector<double>
       for (const double episode : run) groups.push_back({episode});
     }
   }
-  if (groups.size() < kFewestUnits) return std::nullopt;
+  if (groups.size() < kUnitsForBootstrap) return std::nullopt;
   std::vector<double> units;
   for (const std::vector<double>& group : groups) units.push_back(mean(group));
   const Studentized seen = statistic(units);

@@ -10,6 +10,9 @@
 
 namespace coppice {
 
+/// Of fewer, too many resamples do not vary at all.
+inline constexpr std::size_t kUnitsForBootstrap = 10;
+
 /// Studentized bootstrap interval of a statistic (Efron and Tibshirani 1993, chapter 12). `unit` is what was
 /// drawn independently. With Unit::training_run, runs are drawn with replacement, then the episodes of each,
 /// and the statistic is of the runs' means; with Unit::episode it is of all episodes, drawn alike. Nothing

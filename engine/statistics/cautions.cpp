@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "engine/statistics/mean_estimate.h"
-
 namespace coppice {
 namespace {
 
@@ -41,6 +39,19 @@ std::string caution(double units, double skewness, std::string_view unit) {
                        units, unit, skewness);
   }
   return {};
+}
+
+std::string caution(const Moments& units, std::string_view unit) {
+  if (units.n >= 2) {
+    if (!std::isfinite(units.mean)) return fmt::format("the {} have no finite mean", unit);
+    if (!confidence_interval(mean_estimate(units))) {
+      return fmt::format("values of the {} are too large for an interval", unit);
+    }
+    if (!(units.deviation > 0)) {
+      return fmt::format("all {} {} are equal: the interval knows of no other values", units.n, unit);
+    }
+  }
+  return caution(units.n, units.skewness, unit);
 }
 
 }  // namespace coppice

@@ -80,14 +80,15 @@ Improvement probability_of_improvement(std::span<const double> first, std::span<
   if (first.empty() || second.empty()) return {std::numeric_limits<double>::quiet_NaN(), std::nullopt};
   std::vector<double> order(second.begin(), second.end());
   std::sort(order.begin(), order.end());
-  double below = 0;  // pairs whose second value is the smaller one, equal ones half
+  double won = 0;  // pairs whose first value is the better one, equal ones half
   for (const double value : first) {
     const auto [low, high] = std::equal_range(order.begin(), order.end(), value);
-    below += static_cast<double>((low - order.begin()) + (high - order.begin())) / 2;
+    const auto below = (low - order.begin()) + (high - order.begin());
+    const auto all = static_cast<std::ptrdiff_t>(2 * order.size());
+    won += static_cast<double>(better == Better::higher ? below : all - below) / 2;
   }
   const double n = static_cast<double>(first.size()), m = static_cast<double>(second.size());
-  const double share = below / (n * m);
-  Improvement result{better == Better::higher ? share : 1 - share, std::nullopt};
+  Improvement result{won / (n * m), std::nullopt};
   if (n + m < 3) return result;
   const double z = normal_quantile(0.975), p = result.probability;
   result.ci95 = Interval{improvement_limit(p, 0, z, n, m), improvement_limit(p, 1, z, n, m)};

@@ -18,6 +18,22 @@ std::vector<double> sorted(std::span<const double> values) {
   return copy;
 }
 
+/// Of values whose sum is beyond the range of doubles: the mean of finite ones is within.
+double mean_of_large(std::span<const double> values) {
+  const auto n = static_cast<double>(values.size());
+  double sum = 0;
+  for (double value : values) sum += value / n;
+  return sum;
+}
+
+/// A power of two that takes squares of deviations into the range of doubles; 1 unless they leave it.
+double square_scale(std::span<const double> values, double centre) {
+  constexpr double kLarge = 0x1p500;
+  double largest = 0;
+  for (double value : values) largest = std::max(largest, std::fabs(value - centre));
+  return largest > kLarge && std::isfinite(largest) ? 0x1p-600 : 1;
+}
+
 }  // namespace
 
 double mean(std::span<const double> values) {
@@ -25,18 +41,22 @@ double mean(std::span<const double> values) {
   double sum = 0;
   for (double value : values) sum += value;
   const double first = sum / static_cast<double>(values.size());
-  if (!std::isfinite(first)) return first;
+  if (!std::isfinite(first)) return mean_of_large(values);
   double rest = 0;  // what rounding left out of the first pass
   for (double value : values) rest += value - first;
-  return first + rest / static_cast<double>(values.size());
+  return std::isfinite(rest) ? first + rest / static_cast<double>(values.size()) : first;
 }
 
 double standard_deviation(std::span<const double> values) {
   if (values.size() < 2) return kNone;
   const double centre = mean(values);
+  const double scale = square_scale(values, centre);
   double squares = 0;
-  for (double value : values) squares += (value - centre) * (value - centre);
-  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+  for (double value : values) {
+    const double deviation = (value - centre) * scale;
+    squares += deviation * deviation;
+  }
+  return std::sqrt(squares / static_cast<double>(values.size() - 1)) / scale;
 }
 
 double sample_skewness(std::span<const double> values) {
@@ -72,18 +92,18 @@ double interquartile_mean(std::span<const double> values) {
   return mean(std::span<const double>(order).subspan(cut, order.size() - 2 * cut));
 }
 
-Estimate estimate(std::span<const double> units, Better better) {
+Estimate estimate(std::span<const double> units, std::optional<Better> better) {
   Estimate result;
   result.units = units.size();
-  result.mean = mean(units);
-  result.sd = standard_deviation(units);
-  result.skewness = sample_skewness(units);
-  result.ci95 = confidence_interval(
-      mean_estimate(static_cast<double>(result.units), result.mean, result.sd, result.skewness));
+  const Moments known = moments(units);
+  result.mean = known.mean;
+  result.sd = known.deviation;
+  result.skewness = known.skewness;
+  result.ci95 = confidence_interval(mean_estimate(known));
   result.median = median(units);
   result.iqm = interquartile_mean(units);
-  const double lowest = quantile(units, 0);
-  const double highest = quantile(units, 1);
+  const double lowest = better ? quantile(units, 0) : kNone;
+  const double highest = better ? quantile(units, 1) : kNone;
   result.worst = better == Better::higher ? lowest : highest;
   result.best = better == Better::higher ? highest : lowest;
   return result;

@@ -40,12 +40,12 @@ struct Estimate {
   std::optional<Interval> ci95;  ///< of the mean, as confidence_interval has it; nothing for one unit
   double median = 0;
   double iqm = 0;
-  double worst = 0;
-  double best = 0;
+  double worst = 0;  ///< NaN where it is not known which values are good
+  double best = 0;   ///< likewise
 };
 
-/// Of independent values.
-Estimate estimate(std::span<const double> units, Better better);
+/// Of independent values; worst and best are NaN unless it is said which values are good.
+Estimate estimate(std::span<const double> units, std::optional<Better> better);
 
 /// Of the episodes' values of each training run (or, for Unit::episode, of all groups together).
 Estimate estimate(const std::vector<std::vector<double>>& runs, Unit unit, Better better);

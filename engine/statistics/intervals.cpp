@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/statistics/estimates.h"
+#include "engine/statistics/shares.h"
 #include "engine/statistics/student.h"
 #include "engine/vocabulary/elementary.h"
 
@@ -44,13 +45,7 @@ int few_cases(double share, double n) {
 }  // namespace
 
 Interval share_interval(double share, double n, double confidence) {
-  const double z = normal_quantile(0.5 + confidence / 2);
-  const double scale = 1 + z * z / n;
-  const double center = (share + z * z / (2 * n)) / scale;
-  const double half = z * std::sqrt(share * (1 - share) / n + z * z / (4 * n * n)) / scale;
-  // At the ends they are 0 and 1; rounding must not move them.
-  Interval interval{share <= 0 ? 0 : std::fmax(0, center - half),
-                    share >= 1 ? 1 : std::fmin(1, center + half)};
+  Interval interval = *score_interval({share, n}, confidence);
   if (const int cases = few_cases(share, n)) interval.low = poisson_mean(cases, 1 - confidence) / n;
   if (const int others = few_cases(1 - share, n))
     interval.high = 1 - poisson_mean(others, 1 - confidence) / n;

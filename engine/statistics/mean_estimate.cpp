@@ -28,15 +28,20 @@ double skewed(double y, double a) {
 
 }  // namespace
 
-MeanEstimate mean_estimate(double n, double mean, double deviation, double skewness) {
+Moments moments(std::span<const double> values) {
+  return {static_cast<double>(values.size()), mean(values), standard_deviation(values),
+          sample_skewness(values)};
+}
+
+MeanEstimate mean_estimate(const Moments& values) {
+  const auto& [n, mean, deviation, skewness] = values;
   if (!(n >= 2)) return {mean, 0, 0, 0};
   const double third = n < kUnitsForSkewness || std::isnan(skewness) ? 0 : skewness;
   return {mean, deviation * deviation / n, third * deviation * deviation * deviation / (n * n), n - 1};
 }
 
 MeanEstimate mean_estimate(std::span<const double> values) {
-  return mean_estimate(static_cast<double>(values.size()), mean(values), standard_deviation(values),
-                       sample_skewness(values));
+  return mean_estimate(moments(values));
 }
 
 MeanEstimate difference(const MeanEstimate& first, const MeanEstimate& second) {
@@ -50,17 +55,19 @@ MeanEstimate difference(const MeanEstimate& first, const MeanEstimate& second) {
 }
 
 std::optional<Interval> confidence_interval(const MeanEstimate& estimate, double confidence) {
-  if (!(estimate.degrees > 0)) return std::nullopt;
+  if (!(estimate.degrees > 0) || !std::isfinite(estimate.variance)) return std::nullopt;
   if (!(estimate.variance > 0)) return Interval{estimate.mean, estimate.mean};
   const double t = student_t_quantile(0.5 + confidence / 2, estimate.degrees);
   const double a = skew_of(estimate), error = std::sqrt(estimate.variance);
-  return Interval{estimate.mean - std::max(t, skewed(t, a)) * error,
-                  estimate.mean - std::min(-t, skewed(-t, a)) * error};
+  const Interval interval{estimate.mean - std::max(t, skewed(t, a)) * error,
+                          estimate.mean - std::min(-t, skewed(-t, a)) * error};
+  if (!std::isfinite(interval.low) || !std::isfinite(interval.high)) return std::nullopt;
+  return interval;
 }
 
 double p_value(const MeanEstimate& estimate) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (!(estimate.degrees > 0)) return kNone;
+  if (!(estimate.degrees > 0) || !std::isfinite(estimate.variance)) return kNone;
   if (!(estimate.variance > 0)) return estimate.mean == 0 ? kNone : 0;
   const double t = estimate.mean / std::sqrt(estimate.variance);
   return std::max(student_t_two_sided(t, estimate.degrees),

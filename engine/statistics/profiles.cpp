@@ -23,7 +23,8 @@ std::vector<ProfilePoint> performance_profile(std::span<const double> units,
 double optimality_gap(std::span<const double> units, double target, Better better) {
   std::vector<double> missed;
   for (const double value : units) {
-    missed.push_back(std::max(0.0, better == Better::higher ? target - value : value - target));
+    const double away = better == Better::higher ? target - value : value - target;
+    missed.push_back(away < 0 ? 0 : away);  // NaN stays
   }
   return mean(missed);
 }

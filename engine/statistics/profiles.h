@@ -20,7 +20,7 @@ std::vector<ProfilePoint> performance_profile(std::span<const double> units,
                                               std::span<const double> thresholds, Better better);
 
 /// By how much units miss a target, those that reach it counting 0 (Agarwal et al. 2021); in the values'
-/// unit. NaN without units.
+/// unit. NaN without units, and where a unit is NaN.
 double optimality_gap(std::span<const double> units, double target, Better better);
 
 }  // namespace coppice

@@ -16,6 +16,7 @@
 #include "engine/statistics/comparisons.h"
 #include "engine/statistics/mean_estimate.h"
 #include "engine/statistics/profiles.h"
+#include "engine/statistics/shares.h"
 #include "engine/vocabulary/elementary.h"
 #include "engine/vocabulary/random.h"
 
@@ -134,6 +135,63 @@ TEST(DifferenceCoverage, OfPairs) {
     }
     return confidence_interval(mean_estimate(paired_differences(first, second)));
   });
+}
+
+/// Shares of runs of 50 episodes, whose true shares are spread evenly between two limits.
+Values rates(std::size_t n, double low, double high, Stream& stream) {
+  return sample(n, stream, [&](Stream& s) {
+    const double truth = low + (high - low) * s.uniform();
+    int count = 0;
+    for (int i = 0; i < 50; ++i) count += s.uniform() < truth;
+    return count / 50.0;
+  });
+}
+
+TEST(ShareCoverage, OfRuns) {
+  const auto of_runs = [](std::size_t n, double low, double high) {
+    return [=](Stream& stream, const Draws&) {
+      return score_interval(mean_share(rates(n, low, high, stream), 50));
+    };
+  };
+  expect_promised("rate, 10 runs, equal true shares of 30 %", 20000, 0.3, of_runs(10, 0.3, 0.3));
+  expect_promised("rate, 10 runs, true shares 20 to 40 %", 20000, 0.3, of_runs(10, 0.2, 0.4));
+  expect_promised("rate, 10 runs, true shares 0 to 100 %", 20000, 0.5, of_runs(10, 0, 1));
+  expect_promised("rate, 10 runs, true shares 10 to 50 %", 20000, 0.3, of_runs(10, 0.1, 0.5));
+  expect_promised("rate, 20 runs, true shares 80 to 100 %", 20000, 0.9, of_runs(20, 0.8, 1));
+  expect_promised("rate, 50 runs, true shares 90 to 100 %", 20000, 0.95, of_runs(50, 0.9, 1));
+}
+
+TEST(ShareCoverage, OfDifferences) {
+  const auto of_shares = [](double n, double p, double q) {
+    return [=](Stream& stream, const Draws&) {
+      const auto count = [&](double truth) {
+        return mean(sample(static_cast<std::size_t>(n), stream,
+                           [&](Stream& s) { return s.uniform() < truth ? 1.0 : 0.0; }));
+      };
+      const double first = count(p);
+      return ShareDifference{{first, n}, {count(q), n}}.interval();
+    };
+  };
+  expect_promised("difference of shares, 30 and 50 %, n = 20", 20000, -0.2, of_shares(20, 0.3, 0.5));
+  expect_promised("difference of shares, 5 and 10 %, n = 100", 20000, -0.05, of_shares(100, 0.05, 0.1));
+  expect_promised("difference of paired shares, 40 and 50 %, n = 50", 20000, -0.1,
+                  [](Stream& stream, const Draws&) {
+                    Values first(50), second(50);
+                    for (std::size_t i = 0; i < 50; ++i) {
+                      const double common = stream.uniform();  // in half of the pairs it decides both
+                      const bool shared = stream.uniform() < 0.5;
+                      first[i] = (shared ? common : stream.uniform()) < 0.4 ? 1 : 0;
+                      second[i] = (shared ? common : stream.uniform()) < 0.5 ? 1 : 0;
+                    }
+                    ShareDifference difference{{mean(first), 50}, {mean(second), 50}};
+                    difference.correlation = case_correlation(first, second);
+                    return difference.interval();
+                  });
+  expect_promised("difference of rates, 10 runs each, true shares 10 to 50 %", 20000, 0,
+                  [](Stream& stream, const Draws&) {
+                    const ShareEstimate first = mean_share(rates(10, 0.1, 0.5, stream), 50);
+                    return ShareDifference{first, mean_share(rates(10, 0.1, 0.5, stream), 50)}.interval();
+                  });
 }
 
 TEST(ImprovementCoverage, OfNormalValues) {

@@ -86,17 +86,30 @@ TEST(Arrange, NamesTheNearestOfTheKnownKeys) {
               HasSubstr("twice"));
 }
 
-TEST(KeyColumns, AreNumbersWhereEveryKeyIsOneAsWritten) {
+TEST(KeyColumns, AreNumbersWhereEveryKeyIsOne) {
   const std::vector<TableCell> cells = {{{"50", "0.5", "1.50", "HA"}, {}}, {{"300", "2", "2", ""}, {}}};
   Table table;
   add_key_columns(table, {{"a", "b", "c"}, {"d"}}, cells);
   EXPECT_EQ(table.columns[0].type, ColumnInfo::Type::integer);
   EXPECT_EQ(table.columns[1].type, ColumnInfo::Type::number);
-  EXPECT_EQ(table.columns[2].type, ColumnInfo::Type::text) << "1.50 would be written as 1.5";
+  EXPECT_EQ(table.columns[2].type, ColumnInfo::Type::number);
   EXPECT_EQ(table.columns[3].type, ColumnInfo::Type::text);
-  EXPECT_EQ(cell_text(table.rows[0][2]), "1.50");
+  EXPECT_EQ(cell_text(table.rows[0][2]), "1.5") << "the shortest text";
   EXPECT_EQ(cell_text(table.rows[1][0]), "300");
   EXPECT_EQ(cell_text(table.rows[1][3]), "");
+}
+
+TEST(KeyColumns, AreTextsWhereNumbersWouldLoseSomething) {
+  const std::vector<TableCell> cells = {{{"007", "1", "12345678901234567890", "1.0", "1e3"}, {}},
+                                        {{"8", "1.0", "2", "2.0", "2"}, {}}};
+  Table table;
+  add_key_columns(table, {{"name", "same", "digits", "whole", "exponent"}, {}}, cells);
+  EXPECT_EQ(table.columns[0].type, ColumnInfo::Type::text);
+  EXPECT_EQ(table.columns[1].type, ColumnInfo::Type::text) << "two keys must not become one";
+  EXPECT_EQ(table.columns[2].type, ColumnInfo::Type::text);
+  EXPECT_EQ(table.columns[3].type, ColumnInfo::Type::integer);
+  EXPECT_EQ(table.columns[4].type, ColumnInfo::Type::integer);
+  EXPECT_EQ(cell_text(table.rows[0][4]), "1000");
 }
 
 TEST(SameKey, ComparesNumbersByTheirValue) {

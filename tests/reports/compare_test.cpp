@@ -16,6 +16,18 @@ using Values = std::vector<double>;
 
 class CompareTest : public ::testing::Test {
  protected:
+  /// An evaluation of so many episodes, the first `terminal` of which end in a terminal state.
+  void give_rate(const std::string& policy, std::optional<int> replicate, int terminal, int n,
+                 const std::string& training = {}) {
+    give(policy, replicate, Values(static_cast<std::size_t>(n), 0));
+    InputNode& node = context.given["of"].back();
+    node.training = training;
+    std::string episodes = "scenario,return,discounted_return,steps,terminal\n";
+    for (int i = 0; i < n; ++i) episodes += i < terminal ? "0,0,0,1,1\n" : "0,0,0,1,0\n";
+    write_file(node.folder / kReturnsFile, episodes);
+    write_file(node.folder / kEvaluationFile, "episodes,terminal_rate\n" + cell_text(std::int64_t{n}) + "," +
+                                                  cell_text(static_cast<double>(terminal) / n) + "\n");
+  }
   /// An evaluation whose episodes have these returns.
   void give(const std::string& policy, std::optional<int> replicate, const Values& returns,
             const std::string& variant = "HA") {
@@ -142,6 +154,56 @@ TEST_F(CompareTest, ComparesWithinGroupsAndWithABaseline) {
   EXPECT_EQ(text(table, 0, "second"), "a");
   EXPECT_EQ(text(table, 2, "variant"), "ANHA");
   EXPECT_EQ(made({{"by", "variant, policy"}}).rows.size(), 15u);
+}
+
+TEST_F(CompareTest, IsNeverCertainOfRates) {
+  const Attributes attributes = {{"metric", "terminal_rate"}, {"better", "higher"}};
+  give_rate("a", {}, 0, 20);
+  give_rate("b", {}, 20, 20);
+  Table table = made(attributes);
+  EXPECT_EQ(text(table, 0, "method"), "paired episodes");
+  EXPECT_EQ(value(table, 0, "difference"), -1);
+  EXPECT_EQ(value(table, 0, "ci95_low"), -1);
+  EXPECT_NEAR(value(table, 0, "ci95_high"), -0.7721, 5e-5) << "Newcombe's interval of 0/20 - 20/20";
+  EXPECT_GT(value(table, 0, "p_value"), 0);
+  context.given["of"].clear();
+  give_rate("a", {}, 1, 30);
+  give_rate("b", {}, 1, 30);
+  table = made(attributes);
+  EXPECT_LT(value(table, 0, "ci95_low"), -0.05);
+  EXPECT_GT(value(table, 0, "ci95_high"), 0.05);
+  EXPECT_EQ(value(table, 0, "p_value"), 1);
+}
+
+TEST_F(CompareTest, KeepsDifferencesOfRatesOfRunsWithinTheirBounds) {
+  const Attributes attributes = {{"metric", "terminal_rate"}, {"better", "higher"}};
+  for (int r = 0; r < 6; ++r) {
+    give_rate("a", r, 10, 10, "a" + std::to_string(r));
+    give_rate("b", r, 0, 10, "b" + std::to_string(r));
+    give_rate("c", r, r == 0 ? 1 : 0, 10, "c" + std::to_string(r));
+  }
+  give_rate("d", {}, 5, 10);
+  const Table table = made(attributes);
+  ASSERT_EQ(table.rows.size(), 6u);
+  EXPECT_EQ(text(table, 0, "method"), "paired runs");
+  EXPECT_LT(value(table, 0, "ci95_low"), 0.6) << "six trainings of each";
+  EXPECT_THAT(text(table, 0, "caution"), HasSubstr("all 6 pairs of training runs are equal"));
+  EXPECT_EQ(value(table, 1, "ci95_high"), 1);
+  EXPECT_EQ(text(table, 2, "method"), "Newcombe");
+  for (std::size_t row = 0; row < 6; ++row) {
+    EXPECT_LT(value(table, row, "ci95_low"), value(table, row, "ci95_high")) << row;
+    EXPECT_GE(value(table, row, "ci95_low"), -1) << row;
+    EXPECT_LE(value(table, row, "ci95_high"), 1) << row;
+  }
+}
+
+TEST_F(CompareTest, AsksWhetherLongEpisodesAreGood) {
+  give("a", {}, kFirst);
+  give("b", {}, kSecond);
+  EXPECT_THAT(error_of([&] { made({{"metric", "steps"}}); }), HasSubstr("better=\"higher\""));
+  const double high = value(made({{"better", "higher"}}), 0, "improvement");
+  EXPECT_EQ(value(made(), 0, "improvement"), high);
+  EXPECT_NEAR(value(made({{"better", "lower"}}), 0, "improvement"), 1 - high, 1e-12);
 }
 
 TEST_F(CompareTest, SaysWhatIsWrong) {

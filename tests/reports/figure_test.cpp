@@ -220,6 +220,48 @@ TEST_F(FigureTest, SaysWhatIsWrong) {
   EXPECT_THAT(error_of([&] { made({{"x", "ci95_low"}}); }), HasSubstr("has a column 'ci95_low' of its own"));
 }
 
+TEST_F(FigureTest, RefusesWhatItsKindDoesNotHeed) {
+  evaluation(0, "HA", -1);
+  EXPECT_THAT(error_of([&] {
+                made({{"kind", "interval"}, {"bins", "3"}, {"by", "variant"}});
+              }),
+              HasSubstr("only a histogram has bins"));
+  EXPECT_THAT(error_of([&] {
+                made({{"kind", "interval"}, {"better", "lower"}, {"by", "variant"}});
+              }),
+              HasSubstr("only of a profile"));
+  EXPECT_THAT(error_of([&] {
+                made({{"kind", "profile"}, {"y", "steps"}, {"by", "variant"}});
+              }),
+              HasSubstr("better=\"higher\""));
+  const Table table = made({{"kind", "profile"}, {"better", "higher"}, {"by", "variant"}});
+  EXPECT_EQ(value(table, 0, "share"), 1) << "1 is a higher cost than the threshold";
+}
+
+TEST_F(FigureTest, DrawsNumbersAsNumbersHoweverTheyAreWritten) {
+  evaluation(0, "0.5", -1);
+  evaluation(0, "1.0", -2);
+  const Table table = made({{"x", "variant"}});
+  EXPECT_EQ(table.columns[0].type, ColumnInfo::Type::number);
+  EXPECT_EQ(cell_text(table.rows[1][0]), "1");
+  EXPECT_EQ(drawing.at("encoding").at("x").at("type"), "quantitative");
+}
+
+TEST_F(FigureTest, RefusesToTakeAMeanForAnEpisode) {
+  InputNode& node = give("evaluation", {}, "HA");
+  node.element = element("evaluate", {{"returns", "false"}});
+  write_file(node.folder / kEvaluationFile, "episodes,mean_return,sd,skewness\n5,-1,1,0\n");
+  for (const char* kind : {"histogram", "profile"}) {
+    EXPECT_THAT(error_of([&] {
+                  made({{"kind", kind}, {"by", "variant"}});
+                }),
+                HasSubstr("does not keep the episodes"));
+  }
+  EXPECT_EQ(value(made({{"kind", "interval"}, {"by", "variant"}}), 0, "mean"), 1);
+  node.training = "key of the training";  // whose run has one value, its mean
+  EXPECT_EQ(value(made({{"kind", "histogram"}, {"bins", "1"}, {"by", "variant"}}), 0, "count"), 1);
+}
+
 TEST_F(FigureTest, KnowsWhenPlannedWhichColumnsProgressWillHave) {
   learning(0, "1,2\n", 1);
   context.given["of"][0].progress_columns = {"iteration", "cost", "spread"};

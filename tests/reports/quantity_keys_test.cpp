@@ -14,6 +14,12 @@ TEST(QuantityKeys, AreEqualHoweverTheyAreWritten) {
   EXPECT_FALSE(same_key("ten", "10"));
 }
 
+TEST(QuantityKeys, AreOfTheDimensionOfTheirUnit) {
+  EXPECT_TRUE(same_key("1000 g", "1", "kg"));
+  EXPECT_TRUE(same_key("1.0", "1", "kg"));
+  EXPECT_FALSE(same_key("1 m", "1", "kg"));
+}
+
 TEST(QuantityKeys, HaveTheirUnitInTheTable) {
   const std::vector<Entry> entries = {{{{"ang", "0.5"}, {"node", "e"}}, {}, {{"ang", "rad"}}},
                                       {{{"ang", "1"}, {"node", "e"}}, {}, {{"ang", "rad"}}}};

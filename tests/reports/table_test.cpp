@@ -211,6 +211,95 @@ TEST_F(TableTest, KnowsWhichEndIsGood) {
   EXPECT_EQ(value(made({{"metric", "steps"}}), 0, "mean"), 7);
 }
 
+TEST_F(TableTest, DoesNotGuessWhetherLongEpisodesAreGood) {
+  give({{"fpf", 0, -1, 1, 10, 0.25}, {"fpf", 1, -2, 1, 10, 0.75}});
+  const Table neither = made({{"metric", "terminal_rate"}});
+  EXPECT_EQ(value(neither, 0, "mean"), 0.5);
+  EXPECT_EQ(cell_text(neither.rows[0][neither.column("worst")]), "");
+  EXPECT_EQ(cell_text(neither.rows[0][neither.column("best")]), "");
+  for (const char* metric : {"steps", "terminal_rate"}) {
+    EXPECT_THAT(error_of([&] {
+                  made({{"metric", metric}, {"reference", "1"}});
+                }),
+                AllOf(HasSubstr(metric), HasSubstr("better=\"higher\" or better=\"lower\"")));
+  }
+  const Table goal = made({{"metric", "terminal_rate"}, {"better", "higher"}, {"reference", "1"}});
+  EXPECT_EQ(value(goal, 0, "worst"), 0.25);
+  EXPECT_EQ(value(goal, 0, "optimality_gap"), 0.5);
+  const Table failure = made({{"metric", "terminal_rate"}, {"better", "lower"}, {"reference", "0"}});
+  EXPECT_EQ(value(failure, 0, "worst"), 0.75);
+  EXPECT_EQ(value(failure, 0, "optimality_gap"), 0.5);
+}
+
+TEST_F(TableTest, RefusesKnownValuesOfAnotherDimension) {
+  give({{"fpf", 0, -1}, {"fpf", 0, -2}});
+  for (std::size_t i = 0; i < 2; ++i) {
+    context.given["of"][i].labels = {{"mass", i == 0 ? "1" : "2"}};
+    context.given["of"][i].units = {{"mass", "kg"}};
+  }
+  const std::string wrong = file("wrong.csv", "mass,value\n1 m,7\n");
+  EXPECT_THAT(error_of([&] {
+                made({{"rows", "mass"}, {"published", wrong}});
+              }),
+              AllOf(HasSubstr("'1 m' is a length"), HasSubstr("'mass' is a mass")));
+  const std::string right = file("right.csv", "mass,value\n1000 g,7\n");
+  EXPECT_EQ(value(made({{"rows", "mass"}, {"published", right}}), 0, "published"), 7);
+}
+
+TEST_F(TableTest, HasNoReplicatesOfItsOwn) {
+  give({{"fpf", 0, -1}});
+  EXPECT_THAT(error_of([&] { made({{"replicates", "2"}}); }), HasSubstr("takes all replicates"));
+}
+
+TEST_F(TableTest, KeepsTheIntervalOfARateWithinItsBounds) {
+  for (const std::string interval : {"t", "bootstrap"}) {
+    context.given["of"].clear();
+    std::vector<Evaluation> all, few;
+    for (int r = 0; r < 12; ++r) {
+      all.push_back({"all", r, -1, 1, 50, 1, 0, "a" + std::to_string(r)});
+      few.push_back(
+          {"few", r, -1, 1, 50, interval == "t" ? (r < 2 ? 0.5 : 0) : 0.02 * r, 0, "f" + std::to_string(r)});
+    }
+    give(all);
+    give(few);
+    const Table table = made({{"metric", "terminal_rate"}, {"interval", interval}});
+    EXPECT_THAT(cell_text(table.rows[0][table.column("caution")]), HasSubstr("12 training runs")) << interval;
+    EXPECT_GE(value(table, 1, "ci95_low"), 0) << interval;
+    EXPECT_LT(value(table, 1, "ci95_low"), value(table, 1, "mean")) << interval;
+    EXPECT_LE(value(table, 1, "ci95_high"), 1) << interval;
+    EXPECT_TRUE(!(value(table, 0, "iqm_ci95_low") == value(table, 0, "iqm_ci95_high"))) << interval;
+    EXPECT_FALSE(value(table, 0, "ci95_low") == 1) << interval;
+  }
+  const Table table = made({{"metric", "terminal_rate"}});
+  const double z2 = 1.959963984540 * 1.959963984540;
+  EXPECT_NEAR(value(table, 0, "ci95_low"), 12 / (12 + z2), 1e-9) << "twelve trainings, not 600 episodes";
+  EXPECT_EQ(value(table, 0, "ci95_high"), 1);
+  EXPECT_EQ(value(table, 0, "mean"), 1);
+}
+
+TEST_F(TableTest, TakesTheEpisodesOfAllRepetitionsOfWhatWasNotLearned) {
+  give({{"lqr", 0, -1, 0, 20, 0}, {"lqr", 1, -1, 0, 20, 0}});
+  const Table table = made({{"metric", "terminal_rate"}});
+  const double z2 = 1.959963984540 * 1.959963984540;
+  EXPECT_NEAR(value(table, 0, "ci95_high"), z2 / (40 + z2), 1e-9);
+}
+
+TEST_F(TableTest, SaysWhyTheBootstrapHasNoInterval) {
+  give({{"lqr", {}, -1, 2, 40}, {"fpf", 0, -1}, {"fpf", 1, -2}});
+  const Table table = made({{"interval", "bootstrap"}});
+  EXPECT_EQ(cell_text(table.rows[0][table.column("ci95_low")]), "");
+  EXPECT_THAT(cell_text(table.rows[0][table.column("caution")]), HasSubstr("did not keep its episodes"));
+  EXPECT_THAT(cell_text(table.rows[1][table.column("caution")]), HasSubstr("only 2 training runs, and the"));
+}
+
+TEST_F(TableTest, SaysThatEqualRunsSayLittle) {
+  std::vector<Evaluation> runs;
+  for (int r = 0; r < 60; ++r) runs.push_back({"fpf", r, -1});
+  give(runs);
+  const Table table = made();
+  EXPECT_THAT(cell_text(table.rows[0][table.column("caution")]), HasSubstr("all 60 training runs are equal"));
+}
+
 TEST_F(TableTest, DoubtsARateThatWasAlwaysZero) {
   give({{"lqr", {}, -1, 0, 20, 0}});
   const Table table = made({{"metric", "terminal_rate"}});

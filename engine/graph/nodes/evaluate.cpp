@@ -114,7 +114,7 @@ struct EvaluateNode : Node {
 
 const Component<Node, EvaluateNode> kComponent("evaluate",
                                                "Estimate returns and costs of policies on a problem.",
-                                               "no publication", 2);
+                                               "no publication", 3);
 
 }  // namespace
 }  // namespace coppice

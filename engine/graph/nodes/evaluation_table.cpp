@@ -1,5 +1,7 @@
 #include "engine/graph/nodes/evaluation_table.h"
 
+#include <numeric>
+
 #include "engine/statistics/estimates.h"
 #include "engine/statistics/mean_estimate.h"
 
@@ -7,6 +9,12 @@ namespace coppice {
 namespace {
 
 using Type = ColumnInfo::Type;
+
+/// The mean of whole numbers: their sum is exact, and divided once.
+double mean_count(const auto& values) {
+  const std::int64_t sum = std::accumulate(values.begin(), values.end(), std::int64_t{0});
+  return static_cast<double>(sum) / static_cast<double>(values.size());
+}
 
 std::vector<double> numbers(const auto& values) {
   return {values.begin(), values.end()};
@@ -34,8 +42,8 @@ Table evaluation_table(const Returns& returns, int horizon, double discount) {
   add("ci95_high", Type::number, limit(&Interval::high), "Upper end of that interval.");
   add("mean_discounted_return", Type::number, mean(returns.discounted),
       "Mean of the discounted sum of rewards.");
-  add("mean_steps", Type::number, mean(numbers(returns.steps)), "Mean number of steps of an episode.");
-  add("terminal_rate", Type::number, mean(numbers(returns.terminal)),
+  add("mean_steps", Type::number, mean_count(returns.steps), "Mean number of steps of an episode.");
+  add("terminal_rate", Type::number, mean_count(returns.terminal),
       "Share of the episodes that ended in a terminal state, before the horizon.");
   add("horizon", Type::integer, static_cast<std::int64_t>(horizon), "Steps of an episode at most.");
   add("discount", Type::number, discount, "Discount of a step, for the discounted return.");

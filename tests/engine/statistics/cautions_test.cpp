@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace coppice {
 namespace {
@@ -31,6 +33,18 @@ TEST(Caution, NamesSkewedOnes) {
   EXPECT_EQ(caution(50, 2.5, "episodes"), "") << "the interval follows this much";
   EXPECT_THAT(caution(10000, 60, "episodes"), HasSubstr("decide the mean")) << "three of 10000";
   EXPECT_EQ(caution(10000, 40, "episodes"), "");
+}
+
+TEST(Caution, IsDueOfEqualAndOfHugeValues) {
+  const std::vector<double> equal(60, 3.0);
+  EXPECT_THAT(caution(moments(equal), "episodes"), HasSubstr("all 60 episodes are equal"));
+  std::vector<double> varied = equal;
+  for (std::size_t i = 0; i < varied.size(); i += 2) varied[i] = 4;
+  EXPECT_EQ(caution(moments(varied), "episodes"), "");
+  for (double& value : varied) value *= 1e160;
+  EXPECT_THAT(caution(moments(varied), "episodes"), HasSubstr("too large for an interval"));
+  varied[0] = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(caution(moments(varied), "episodes"), HasSubstr("no finite mean"));
 }
 
 }  // namespace

@@ -93,5 +93,13 @@ TEST(ProbabilityOfImprovement, DoubtsEvenACleanSeparation) {
       probability_of_improvement(std::vector<double>{1}, std::vector<double>{2}, Better::higher).ci95);
 }
 
+TEST(ProbabilityOfImprovement, DividesCountsOnce) {
+  const std::vector<double> first = {1, 2, 3}, second = {0.5, 1.5, 2.5, 3.5};
+  EXPECT_EQ(probability_of_improvement(first, second, Better::higher).probability, 6.0 / 12);
+  const std::vector<double> costs = {1, 2, 4};
+  EXPECT_EQ(probability_of_improvement(costs, second, Better::higher).probability, 7.0 / 12);
+  EXPECT_EQ(probability_of_improvement(costs, second, Better::lower).probability, 5.0 / 12);
+}
+
 }  // namespace
 }  // namespace coppice

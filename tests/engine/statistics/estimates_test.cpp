@@ -102,5 +102,22 @@ TEST(Estimate, IntervalsOverTrainingRunsCoverNestedData) {
   EXPECT_LT(by_episode / 10000.0, 0.9);
 }
 
+TEST(Mean, OfHugeValuesIsOneOfThem) {
+  const std::vector<double> huge = {1e308, 1e308, 1e308, 1e308};
+  EXPECT_NEAR(mean(huge) / 1e308, 1, 1e-15);
+  EXPECT_EQ(standard_deviation(huge), 0);
+  const std::vector<double> half = {0, 1e308, 0, 1e308};
+  EXPECT_NEAR(mean(half) / 5e307, 1, 1e-15);
+  EXPECT_NEAR(standard_deviation(half) / 1e308, std::sqrt(1.0 / 3), 1e-15);
+  EXPECT_EQ(mean(std::vector<double>{1.7e308, -1.7e308}), 0);
+}
+
+TEST(Estimate, HasNoWorstAndBestWhereNobodySaysWhatIsGood) {
+  const Estimate unknown = estimate(std::vector<double>{1, 2}, std::nullopt);
+  EXPECT_TRUE(std::isnan(unknown.worst));
+  EXPECT_TRUE(std::isnan(unknown.best));
+  EXPECT_EQ(unknown.mean, 1.5);
+}
+
 }  // namespace
 }  // namespace coppice

@@ -82,6 +82,15 @@ TEST(MeanEstimate, OfNothingOrOneValueHasNoInterval) {
   EXPECT_FALSE(confidence_interval(difference(mean_estimate(Values{1}), mean_estimate(kFirstDrug))));
 }
 
+TEST(MeanEstimate, SaysNothingBeyondTheRangeOfNumbers) {
+  const Values large = {0, 1e160, 0, 0, 0, 0, 0, 1e160, 0, 0, 0, 0};
+  EXPECT_FALSE(confidence_interval(mean_estimate(large))) << "the variance is no double";
+  EXPECT_TRUE(std::isnan(p_value(mean_estimate(large))));
+  const MeanEstimate unknown = mean_estimate(Moments{12, 1, std::nan(""), 0});
+  EXPECT_FALSE(confidence_interval(unknown));
+  EXPECT_TRUE(std::isnan(p_value(unknown)));
+}
+
 TEST(MeanEstimate, OfEqualValuesIsCertain) {
   const MeanEstimate same = mean_estimate(Values(20, 3.0));
   EXPECT_EQ(confidence_interval(same)->low, 3);

@@ -39,5 +39,9 @@ TEST(OptimalityGap, CountsWhatIsMissingOnly) {
   EXPECT_TRUE(std::isnan(optimality_gap({}, 1, Better::higher)));
 }
 
+TEST(OptimalityGap, IsUnknownOfAnUnknownValue) {
+  EXPECT_TRUE(std::isnan(optimality_gap(Values{1, std::nan("")}, 0, Better::lower)));
+}
+
 }  // namespace
 }  // namespace coppice
