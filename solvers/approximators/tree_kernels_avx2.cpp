@@ -47,7 +47,8 @@ alignas(64) constexpr std::int32_t kOnes[2 * kLanes] = {-1, -1, -1, -1, -1, -1, 
 namespace coppice {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+#include "solvers/approximators/tree_kernels_x86.h"
+
 constexpr std::size_t kColumnsAtOnce = 4;
 
 struct Floats {
@@ -125,22 +126,13 @@ inline std::size_t counted(Counts counts) {
   return counts;
 }
 inline float total(Floats a) {
-  const __m256 b = _mm256_add_ps(a.low, a.high);
-  const __m128 c = _mm_add_ps(_mm256_castps256_ps128(b), _mm256_extractf128_ps(b, 1));
-  const __m128 d = _mm_add_ps(c, _mm_movehl_ps(c, c));
-  return _mm_cvtss_f32(_mm_add_ss(d, _mm_movehdup_ps(d)));
+  return total_of_8(_mm256_add_ps(a.low, a.high));
 }
 inline float least(Floats a) {
-  const __m256 b = _mm256_min_ps(a.low, a.high);
-  const __m128 c = _mm_min_ps(_mm256_castps256_ps128(b), _mm256_extractf128_ps(b, 1));
-  const __m128 d = _mm_min_ps(c, _mm_movehl_ps(c, c));
-  return _mm_cvtss_f32(_mm_min_ss(d, _mm_movehdup_ps(d)));
+  return least_of_8(_mm256_min_ps(a.low, a.high));
 }
 inline float most(Floats a) {
-  const __m256 b = _mm256_max_ps(a.low, a.high);
-  const __m128 c = _mm_max_ps(_mm256_castps256_ps128(b), _mm256_extractf128_ps(b, 1));
-  const __m128 d = _mm_max_ps(c, _mm_movehl_ps(c, c));
-  return _mm_cvtss_f32(_mm_max_ss(d, _mm_movehdup_ps(d)));
+  return most_of_8(_mm256_max_ps(a.low, a.high));
 }
 inline Doubles no_doubles() {
   const __m256d zero = _mm256_setzero_pd();
@@ -163,12 +155,7 @@ inline Doubles add_product(Doubles a, Floats b, Floats c) {
   return a;
 }
 inline double total(Doubles a) {
-  const __m256d b = _mm256_add_pd(_mm256_add_pd(a.part[0], a.part[2]), _mm256_add_pd(a.part[1], a.part[3]));
-  const __m128d c = _mm_add_pd(_mm256_castpd256_pd128(b), _mm256_extractf128_pd(b, 1));
-  return _mm_cvtsd_f64(_mm_add_sd(c, _mm_unpackhi_pd(c, c)));
-}
-inline float* aligned(float* work) {
-  return reinterpret_cast<float*>((reinterpret_cast<std::uintptr_t>(work) + 63) / 64 * 64);
+  return total_of_4(_mm256_add_pd(_mm256_add_pd(a.part[0], a.part[2]), _mm256_add_pd(a.part[1], a.part[3])));
 }
 
 #include "solvers/approximators/tree_kernels_body.h"
@@ -270,8 +257,7 @@ void partition(const SampleBlock& block, std::uint32_t feature, float threshold,
 #endif
 
 const TreeKernels* avx2_tree_kernels() {
-  static constexpr TreeKernels kKernels = {"avx2",         round_up,  sum_outputs, find_ranges,
-                                           find_low_sides, partition, low_products};
+  static constexpr TreeKernels kKernels = table("avx2");
   const bool runs = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt");
   return runs ? &kKernels : nullptr;
 }

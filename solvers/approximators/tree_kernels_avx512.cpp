@@ -21,7 +21,8 @@
 namespace coppice {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+#include "solvers/approximators/tree_kernels_x86.h"
+
 constexpr std::size_t kColumnsAtOnce = 8;
 
 using Floats = __m512;
@@ -86,29 +87,26 @@ inline Counts add_count(Counts counts, Mask mask) {
 inline std::size_t counted(Counts counts) {
   return counts;
 }
+inline __m256 low_half(Floats a) {
+  return _mm512_castps512_ps256(a);
+}
+inline __m256 high_half(Floats a) {
+  return _mm512_extractf32x8_ps(a, 1);
+}
 inline float total(Floats a) {
-  const __m256 b = _mm256_add_ps(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps(a, 1));
-  const __m128 c = _mm_add_ps(_mm256_castps256_ps128(b), _mm256_extractf128_ps(b, 1));
-  const __m128 d = _mm_add_ps(c, _mm_movehl_ps(c, c));
-  return _mm_cvtss_f32(_mm_add_ss(d, _mm_movehdup_ps(d)));
+  return total_of_8(_mm256_add_ps(low_half(a), high_half(a)));
 }
 inline float least(Floats a) {
-  const __m256 b = _mm256_min_ps(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps(a, 1));
-  const __m128 c = _mm_min_ps(_mm256_castps256_ps128(b), _mm256_extractf128_ps(b, 1));
-  const __m128 d = _mm_min_ps(c, _mm_movehl_ps(c, c));
-  return _mm_cvtss_f32(_mm_min_ss(d, _mm_movehdup_ps(d)));
+  return least_of_8(_mm256_min_ps(low_half(a), high_half(a)));
 }
 inline float most(Floats a) {
-  const __m256 b = _mm256_max_ps(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps(a, 1));
-  const __m128 c = _mm_max_ps(_mm256_castps256_ps128(b), _mm256_extractf128_ps(b, 1));
-  const __m128 d = _mm_max_ps(c, _mm_movehl_ps(c, c));
-  return _mm_cvtss_f32(_mm_max_ss(d, _mm_movehdup_ps(d)));
+  return most_of_8(_mm256_max_ps(low_half(a), high_half(a)));
 }
 inline Doubles no_doubles() {
   return {_mm512_setzero_pd(), _mm512_setzero_pd()};
 }
 inline Doubles widened(Floats a) {
-  return {_mm512_cvtps_pd(_mm512_castps512_ps256(a)), _mm512_cvtps_pd(_mm512_extractf32x8_ps(a, 1))};
+  return {_mm512_cvtps_pd(low_half(a)), _mm512_cvtps_pd(high_half(a))};
 }
 inline Doubles add(Doubles a, Floats b) {
   const Doubles wide = widened(b);
@@ -123,13 +121,8 @@ inline Doubles add_product(Doubles a, Floats b, Floats c) {
 inline double total(Doubles a) {
   const __m512d sum = _mm512_add_pd(a.low, a.high);
   // The variants with a mask, as those without make g++ 12 warn of its own headers.
-  const __m256d b =
-      _mm256_add_pd(_mm512_maskz_extractf64x4_pd(0xf, sum, 0), _mm512_maskz_extractf64x4_pd(0xf, sum, 1));
-  const __m128d c = _mm_add_pd(_mm256_castpd256_pd128(b), _mm256_extractf128_pd(b, 1));
-  return _mm_cvtsd_f64(_mm_add_sd(c, _mm_unpackhi_pd(c, c)));
-}
-inline float* aligned(float* work) {
-  return reinterpret_cast<float*>((reinterpret_cast<std::uintptr_t>(work) + 63) / 64 * 64);
+  return total_of_4(
+      _mm256_add_pd(_mm512_maskz_extractf64x4_pd(0xf, sum, 0), _mm512_maskz_extractf64x4_pd(0xf, sum, 1)));
 }
 
 #include "solvers/approximators/tree_kernels_body.h"
@@ -175,11 +168,7 @@ void partition_column(const float* x, float threshold, std::size_t size, float* 
 
 void partition(const SampleBlock& block, std::uint32_t feature, float threshold, float* scratch,
                std::size_t) {
-  float* x = block.column(feature);
-  for (std::size_t c = 0; c < block.width(); ++c) {
-    if (c != feature) partition_column(x, threshold, block.size(), block.column(c), scratch);
-  }
-  partition_column(x, threshold, block.size(), x, scratch);
+  partition_by_column(block, feature, threshold, scratch, partition_column);
 }
 
 }  // namespace
@@ -191,8 +180,7 @@ void partition(const SampleBlock& block, std::uint32_t feature, float threshold,
 #endif
 
 const TreeKernels* avx512_tree_kernels() {
-  static constexpr TreeKernels kKernels = {"avx512",       round_up,  sum_outputs, find_ranges,
-                                           find_low_sides, partition, low_products};
+  static constexpr TreeKernels kKernels = table("avx512");
   const bool runs = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
                     __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
                     __builtin_cpu_supports("popcnt");

@@ -201,3 +201,23 @@ inline void low_products(const SampleBlock& block, std::uint32_t feature, float 
   }
   flush();
 }
+
+// Column after column, the one that splits last.
+template <class PartitionColumn>
+void partition_by_column(const SampleBlock& block, std::uint32_t feature, float threshold, float* scratch,
+                         const PartitionColumn& partition_column) {
+  float* x = block.column(feature);
+  for (std::size_t c = 0; c < block.width(); ++c) {
+    if (c != feature) partition_column(x, threshold, block.size(), block.column(c), scratch);
+  }
+  partition_column(x, threshold, block.size(), x, scratch);
+}
+
+// These two are up to each source.
+void round_up(const double* from, std::size_t size, float* to);
+void partition(const SampleBlock& block, std::uint32_t feature, float threshold, float* scratch,
+               std::size_t scratch_size);
+
+constexpr TreeKernels table(const char* name) {
+  return {name, round_up, sum_outputs, find_ranges, find_low_sides, partition, low_products};
+}

@@ -183,18 +183,13 @@ void partition_column(const float* x, float threshold, std::size_t size, float* 
 
 void partition(const SampleBlock& block, std::uint32_t feature, float threshold, float* scratch,
                std::size_t) {
-  float* x = block.column(feature);
-  for (std::size_t c = 0; c < block.width(); ++c) {
-    if (c != feature) partition_column(x, threshold, block.size(), block.column(c), scratch);
-  }
-  partition_column(x, threshold, block.size(), x, scratch);
+  partition_by_column(block, feature, threshold, scratch, partition_column);
 }
 
 }  // namespace
 
 const TreeKernels& portable_tree_kernels() {
-  static constexpr TreeKernels kKernels = {"portable",     round_up,  sum_outputs, find_ranges,
-                                           find_low_sides, partition, low_products};
+  static constexpr TreeKernels kKernels = table("portable");
   return kKernels;
 }
 
