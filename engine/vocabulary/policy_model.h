@@ -25,7 +25,9 @@ struct LinearModel {
   bool bias_last = false;
 };
 
-/// Trees, equally many for each output.
+/// Trees, equally many for each output, over the inputs and, behind them, the directions: weighted sums of the
+/// inputs, each its offset + weights[0] x[0] + ..., summed from the left. x[i] below is feature i, of inputs
+/// and directions.
 struct ForestModel {
   /// A split leads to the node after `child` of its tree where x[index] > `value`, else (also for NaN) to
   /// `child`. Without a child it is a leaf: of `value`, or with the linear model number `index` of its tree.
@@ -50,6 +52,7 @@ struct ForestModel {
   };
 
   std::size_t inputs = 0;
+  std::vector<double> directions;  ///< rows of inputs + 1 numbers: offset, weights
   bool linear_leaves = false;
   /// Given, and not 0: m is the mean of the trees' values, each linear one held in its own range, without the
   /// n lowest and the n highest. With the n-th lowest of them, a, and the n-th highest, b: a where they are
@@ -61,6 +64,8 @@ struct ForestModel {
   std::vector<Output> outputs;
 
   std::size_t width() const { return inputs + 3; }  ///< of a row of models
+  std::size_t direction_count() const { return directions.size() / (inputs + 1); }
+  std::size_t features() const { return inputs + direction_count(); }
   std::size_t trees() const { return outputs.front().trees.size(); }
 };
 

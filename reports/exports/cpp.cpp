@@ -114,10 +114,10 @@ std::string node_text(const ForestModel& model, const ForestModel::Node& node, s
     if (node.child - at > kMaxAhead) too_large();
     return fmt::format("{{{}, {}, {}}}", literal(node.value), node.index, node.child - at);
   }
-  if (!model.linear_leaves) return fmt::format("{{{}, {}, 0}}", literal(node.value), model.inputs);
+  if (!model.linear_leaves) return fmt::format("{{{}, {}, 0}}", literal(node.value), model.features());
   const std::size_t row = first_row + node.index;
   if (row > kMaxAhead) too_large();
-  return fmt::format("{{{}, {}, 0}}", literal(static_cast<float>(row)), model.inputs);
+  return fmt::format("{{{}, {}, 0}}", literal(static_cast<float>(row)), model.features());
 }
 
 std::string function(const ForestModel& model) {
@@ -148,7 +148,12 @@ std::string function(const ForestModel& model) {
   } else {
     text += model.linear_leaves ? kCppMeanOfLinear : kCppMeanOfConstants;
   }
-  return text + std::string(kCppForest);
+  if (model.directions.empty()) return text + std::string(kCppForest);
+  text += fmt::format(
+      "\n/// Of oblique splits: rows of offset and weights.\ninline constexpr std::size_t "
+      "kDirectionCount = {};\n",
+      model.direction_count());
+  return text + array("double", "kDirections", numbers(model.directions)) + std::string(kCppObliqueForest);
 }
 
 /// The header's functions over structs: call act with arrays.

@@ -279,6 +279,22 @@ inline void function(const double* x, double* y) noexcept {
 }
 )";
 
+inline constexpr std::string_view kCppObliqueForest = R"(
+inline void function(const double* x, double* y) noexcept {
+  float rounded[kStateSize + kDirectionCount + 1];  // inputs, then directions, which splits know as inputs, too
+  for (std::size_t i = 0; i < kStateSize; ++i) rounded[i] = rounded_up(x[i]);
+  for (std::size_t j = 0; j < kDirectionCount; ++j) {
+    const double* row = kDirections + j * (kStateSize + 1);
+    double sum = row[0];
+    for (std::size_t i = 0; i < kStateSize; ++i) sum += product(row[1 + i], x[i]);
+    rounded[kStateSize + j] = rounded_up(sum);
+  }
+  // What leaves look at: above none of them, so that descents stay there.
+  rounded[kStateSize + kDirectionCount] = -FLT_MAX;
+  for (std::size_t o = 0; o < kActionSize; ++o) y[o] = value(o, x, rounded);
+}
+)";
+
 inline constexpr std::string_view kCppClamp = R"(
 /// The value moved into the axis's range (wrapped, where it is circular); a NaN becomes the centre.
 inline double inside(double value, const Axis& axis) noexcept {

@@ -55,6 +55,7 @@ struct Drawing {
     }
   }
   void draw(const ForestModel& model);
+  std::string split_text(const ForestModel& model, const ForestModel::Node& node) const;
   void draw_tree(const ForestModel& model, std::size_t output, std::size_t tree, std::size_t depth);
 };
 
@@ -104,6 +105,13 @@ void Drawing::draw(const ForestModel& model) {
   }
 }
 
+std::string Drawing::split_text(const ForestModel& model, const ForestModel::Node& node) const {
+  const auto threshold = static_cast<double>(node.value);
+  if (node.index < model.inputs) return fmt::format("{} <= {:.6g}", states()[node.index].name, threshold);
+  const double* row = &model.directions[(node.index - model.inputs) * (model.inputs + 1)];
+  return fmt::format("{} <= {:.6g}", linear_text(row[0], row + 1, states()), threshold);
+}
+
 void Drawing::draw_tree(const ForestModel& model, std::size_t output, std::size_t tree, std::size_t depth) {
   const ForestModel::Output& forest = model.outputs[output];
   const ForestModel::Tree& drawn = forest.trees[tree];
@@ -122,7 +130,7 @@ void Drawing::draw_tree(const ForestModel& model, std::size_t output, std::size_
     } else if (shape.depth[i] == depth) {
       box(id(i), fmt::format("... {} leaves", shape.leaves[i]));
     } else {
-      box(id(i), fmt::format("{} <= {:.6g}", states()[node.index].name, static_cast<double>(node.value)));
+      box(id(i), split_text(model, node));
       text += fmt::format("  {} -> {} [label=yes];\n  {} -> {} [label=no];\n", id(i), id(node.child), id(i),
                           id(node.child + 1));
     }

@@ -54,11 +54,13 @@ Json json(const ForestModel& model) {
       object["trees"].push_back(json(tree, model.linear_leaves));
     outputs.push_back(std::move(object));
   }
-  return {{"kind", "forest"},
-          {"inputs", model.inputs},
-          {"leaves", model.linear_leaves ? "linear" : "constant"},
-          {"trimmed", model.trimmed ? Json(*model.trimmed) : Json(nullptr)},
-          {"outputs", std::move(outputs)}};
+  Json object = {{"kind", "forest"},
+                 {"inputs", model.inputs},
+                 {"leaves", model.linear_leaves ? "linear" : "constant"},
+                 {"trimmed", model.trimmed ? Json(*model.trimmed) : Json(nullptr)},
+                 {"outputs", std::move(outputs)}};
+  if (!model.directions.empty()) object["directions"] = model.directions;
+  return object;
 }
 
 /// All numbers of a policy, each with the digits that read back to the same double (docs/exports.md says what

@@ -129,6 +129,12 @@ class Writer {
           "ONNX's TreeEnsembleRegressor sums the trees; it cannot express their trimmed mean (cpp and json "
           "can)");
     }
+    if (!model.directions.empty()) {
+      throw std::invalid_argument(
+          "ONNX's TreeEnsembleRegressor splits by single inputs; it cannot express oblique splits (cpp and "
+          "json "
+          "can)");
+    }
     TreeAttributes trees;
     trees.add(model);
     const std::size_t targets = model.outputs.size() * (model.linear_leaves ? model.width() : 1);

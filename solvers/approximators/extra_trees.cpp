@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <stdexcept>
 
 #include "engine/vocabulary/elementary.h"
 #include "solvers/approximators/forest_function.h"
@@ -11,6 +14,9 @@ namespace {
 struct TreeParameters {
   enum class Leaves { pwc, pwl };
   Leaves leaves = Leaves::pwc;
+  enum class Splits { axis, oblique };
+  Splits splits = Splits::axis;
+  std::optional<int> directions;
   std::optional<int> k;
   std::optional<int> n_min;
   Growth::Short too_few = Growth::Short::redraw;
@@ -22,7 +28,9 @@ struct TreeParameters {
     Growth growth;
     const bool enough = samples > inputs;  // fewer do not determine a linear model
     growth.leaf = leaves == Leaves::pwl && enough ? LeafModel::linear : LeafModel::constant;
-    growth.candidates = k ? std::min(static_cast<std::size_t>(*k), inputs) : inputs;
+    growth.directions = direction_count(inputs);
+    growth.candidates = inputs + growth.directions;
+    if (k) growth.candidates = std::min(growth.candidates, static_cast<std::size_t>(*k));
     const auto logarithm = static_cast<std::size_t>(elementary::log(static_cast<double>(samples)));
     const std::size_t few = growth.leaf == LeafModel::linear ? std::max(inputs + 1, logarithm * inputs)
                                                              : std::max<std::size_t>(1, logarithm);
@@ -33,13 +41,40 @@ struct TreeParameters {
     return growth;
   }
 
+  /// One input has no directions but itself.
+  std::size_t direction_count(std::size_t inputs) const {
+    if (splits == Splits::axis || inputs < 2) return 0;
+    if (inputs >= kMaxTreeInputs) {
+      throw std::invalid_argument(
+          fmt::format("oblique splits take at most {} inputs, not {}", kMaxTreeInputs - 1, inputs));
+    }
+    const std::size_t most = kMaxTreeInputs - inputs;
+    if (!directions) return std::min(kDirectionsPerInput * inputs, most);
+    const auto count = static_cast<std::size_t>(*directions);
+    if (count > most) {
+      throw std::invalid_argument(
+          fmt::format("directions={} are too many for {} inputs: inputs and directions "
+                      "are at most {}; at most {} are valid here",
+                      count, inputs, kMaxTreeInputs, most));
+    }
+    return count;
+  }
+  static constexpr std::size_t kDirectionsPerInput = 16;
+
+  void check() const {
+    if (directions && splits == Splits::axis) {
+      throw std::invalid_argument(
+          "directions are given, but splits=\"axis\" has none; valid is splits=\"oblique\"");
+    }
+  }
+
   template <class T>
   static Parameters<T> declare() {
     return Parameters<T>()
         .choice("leaves", static_cast<Leaves T::*>(&T::leaves), {"pwc", "pwl"},
                 "Models in the leaves: constant, or linear (constant when there are too few samples).")
         .automatic("k", static_cast<std::optional<int> T::*>(&T::k), "",
-                   "Input dimensions tried at each node; auto: all of them.", at_least(1))
+                   "Input dimensions (and directions) tried at each node; auto: all of them.", at_least(1))
         .automatic(
             "n_min", static_cast<std::optional<int> T::*>(&T::n_min), "",
             "Samples in a leaf at least; auto, for N samples of D inputs: max(1, floor(ln N)) for constant "
@@ -54,7 +89,15 @@ struct TreeParameters {
              "Nodes whose outputs have no more variance are not split.", at_least(0))
         .add("margin", static_cast<double T::*>(&T::margin), "",
              "A linear leaf's prediction may leave the range of its samples' outputs by this part of it.",
-             at_least(0));
+             at_least(0))
+        .choice("splits", static_cast<Splits T::*>(&T::splits), {"axis", "oblique"},
+                "What nodes split by: an input, or also a weighted sum of inputs, from a table of random "
+                "directions of the standardized inputs that all trees share.")
+        .automatic(
+            "directions", static_cast<std::optional<int> T::*>(&T::directions), "",
+            "Directions of oblique splits; with the inputs at most 255. Auto: 16 for each input, as far "
+            "as that allows.",
+            between(1, kMaxTreeInputs - 1));
   }
 };
 

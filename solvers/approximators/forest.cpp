@@ -47,10 +47,14 @@ void for_each_leaf(const ForestNode* nodes, std::span<const std::uint32_t> roots
 
 }  // namespace
 
-Forest::Forest(std::size_t inputs, std::vector<OutputScale> outputs, LeafModel leaf)
-    : inputs_(inputs), leaf_(leaf), scales_(std::move(outputs)) {
+Forest::Forest(std::size_t inputs, std::vector<OutputScale> outputs, LeafModel leaf, Directions directions)
+    : inputs_(inputs), leaf_(leaf), scales_(std::move(outputs)), directions_(std::move(directions)) {
   if (inputs > kMaxTreeInputs) {
     throw std::invalid_argument(fmt::format("trees take at most {} inputs, not {}", kMaxTreeInputs, inputs));
+  }
+  if (features() > kMaxTreeInputs) {
+    throw std::invalid_argument(fmt::format("trees of {} inputs take at most {} directions, not {}", inputs,
+                                            kMaxTreeInputs - inputs, directions_.size()));
   }
 }
 
@@ -65,9 +69,10 @@ PackedTree pack(const Tree& tree) {
       const auto feature = static_cast<std::uint32_t>(node.feature);
       packed.nodes.push_back(ForestNode::split(feature, static_cast<float>(node.value), ahead));
     } else if (tree.leaf == LeafModel::constant) {
-      packed.nodes.push_back(ForestNode::leaf(tree.inputs, static_cast<float>(node.value)));
+      packed.nodes.push_back(ForestNode::leaf(tree.features(), static_cast<float>(node.value)));
     } else {
-      packed.nodes.push_back(ForestNode::linear_leaf(tree.inputs, static_cast<std::uint32_t>(node.value)));
+      const auto row = static_cast<std::uint32_t>(node.value);
+      packed.nodes.push_back(ForestNode::linear_leaf(tree.features(), row));
     }
   }
   return packed;
@@ -104,14 +109,15 @@ void Forest::add(const PackedTree& tree) {
       nodes_.push_back(node);
       continue;
     }
-    nodes_.push_back(ForestNode::linear_leaf(inputs_, static_cast<std::uint32_t>(models_.size() / width)));
+    nodes_.push_back(ForestNode::linear_leaf(features(), static_cast<std::uint32_t>(models_.size() / width)));
     const auto row = tree.models.begin() + static_cast<std::ptrdiff_t>(node.row() * width);
     models_.insert(models_.end(), row, row + static_cast<std::ptrdiff_t>(width));
   }
 }
 
 ForestTree Forest::tree(std::size_t output, std::size_t index) const {
-  return {inputs_, leaf_, nodes_.data(), models_.data(), roots_[output * trees() + index], scales_[output]};
+  return {inputs_,         leaf_,       nodes_.data(), models_.data(), roots_[output * trees() + index],
+          scales_[output], &directions_};
 }
 
 double Forest::linear_value(std::uint32_t leaf, const double* x) const {
@@ -125,8 +131,10 @@ void Forest::predict(std::span<const double> x, std::span<double> y) const {
   assert(x.size() == inputs_ && y.size() == outputs());
   std::array<float, kMaxTreeInputs + 1> rounded;
   std::transform(x.begin(), x.end(), rounded.begin(), rounded_up);
-  rounded[inputs_] = std::numeric_limits<float>::quiet_NaN();
-  const std::span<const float> inputs(rounded.data(), inputs_);
+  for (std::size_t j = 0; j < directions_.size(); ++j)
+    rounded[inputs_ + j] = rounded_up(directions_.value(j, x.data()));
+  rounded[features()] = std::numeric_limits<float>::quiet_NaN();
+  const std::span<const float> inputs(rounded.data(), features());
   for (std::size_t output = 0; output < outputs(); ++output) {
     y[output] = aggregation_ == Aggregation::mean ? mean(output, x.data(), inputs)
                                                   : trimmed(output, x.data(), inputs);

@@ -29,9 +29,10 @@ inline float rounded_up(double x) {
 }
 
 /// One node of a packed tree, 8 bytes. A split sends x[feature] <= value to the node `ahead` places after it
-/// and the rest to the one behind that. A leaf has feature == inputs and 0 ahead: with a NaN after the last
-/// input, a descent stays in it without a test. Its value is its constant in units of its output's scale, or
-/// the number of its linear model.
+/// and the rest to the one behind that; features are the inputs, then the forest's directions, by which
+/// oblique splits go. A leaf has the feature after the last and 0 ahead: with a NaN there, a descent stays in
+/// it without a test. Its value is its constant in units of its output's scale, or the number of its linear
+/// model.
 struct ForestNode {
   float value = 0;
   std::uint32_t link = 0;
@@ -40,11 +41,11 @@ struct ForestNode {
   static constexpr ForestNode split(std::uint32_t feature, float threshold, std::uint32_t ahead) {
     return {threshold, feature << 24 | ahead};
   }
-  static constexpr ForestNode leaf(std::size_t inputs, float value) {
-    return {value, static_cast<std::uint32_t>(inputs) << 24};
+  static constexpr ForestNode leaf(std::size_t features, float value) {
+    return {value, static_cast<std::uint32_t>(features) << 24};
   }
-  static constexpr ForestNode linear_leaf(std::size_t inputs, std::uint32_t row) {
-    return {std::bit_cast<float>(kFirstRow + row), static_cast<std::uint32_t>(inputs) << 24};
+  static constexpr ForestNode linear_leaf(std::size_t features, std::uint32_t row) {
+    return {std::bit_cast<float>(kFirstRow + row), static_cast<std::uint32_t>(features) << 24};
   }
   constexpr std::uint32_t feature() const { return link >> 24; }
   constexpr std::uint32_t ahead() const { return link & kMaxAhead; }
@@ -98,6 +99,7 @@ struct ForestTree {
   const double* models = nullptr;
   std::uint32_t root = 0;
   OutputScale scale;
+  const Directions* directions = nullptr;
 
   bool is_leaf(std::uint32_t node) const { return nodes[node].ahead() == 0; }
   double constant(std::uint32_t node) const { return scale.offset + scale.scale * nodes[node].value; }
@@ -107,10 +109,12 @@ struct ForestTree {
 /// Regression forests for one or several outputs, one after the other, each the mean of its trees (thesis,
 /// Eq. 2.2) or their trimmed mean: all nodes in one array, children after their parents. The mean of linear
 /// models is held in the mean of their ranges; a trimmed mean is one of models that are held in their own.
+/// Trees share one table of directions, which a prediction computes once, so that an oblique split costs as
+/// much as any other.
 class Forest {
  public:
   Forest() = default;
-  Forest(std::size_t inputs, std::vector<OutputScale> outputs, LeafModel leaf);
+  Forest(std::size_t inputs, std::vector<OutputScale> outputs, LeafModel leaf, Directions directions = {});
 
   /// Adds a tree of `leaf()` models; outputs in order, equally many trees each.
   void add(const PackedTree& tree);
@@ -121,6 +125,9 @@ class Forest {
   LeafModel leaf() const { return leaf_; }
   Aggregation aggregation() const { return aggregation_; }
   void aggregate_by(Aggregation aggregation) { aggregation_ = aggregation; }
+  const Directions& directions() const { return directions_; }
+  /// What nodes can split by: inputs, then directions.
+  std::size_t features() const { return inputs_ + directions_.size(); }
   /// Trees of one output.
   std::size_t trees() const { return scales_.empty() ? 0 : roots_.size() / scales_.size(); }
   ForestTree tree(std::size_t output, std::size_t index) const;
@@ -138,6 +145,7 @@ class Forest {
   friend bool operator==(const Forest&, const Forest&) = default;
 
  private:
+  void load_directions(const Archive& archive);
   static Forest load_first_format(const Archive& archive, std::size_t inputs, std::size_t outputs,
                                   LeafModel leaf);
   double linear_value(std::uint32_t leaf, const double* x) const;
@@ -150,6 +158,7 @@ class Forest {
   LeafModel leaf_ = LeafModel::constant;
   Aggregation aggregation_ = Aggregation::mean;
   std::vector<OutputScale> scales_;
+  Directions directions_;
   std::vector<ForestNode> nodes_;
   std::vector<double> models_;
   std::vector<std::uint32_t> roots_;

@@ -91,6 +91,19 @@ void Forest::save(Archive& archive) const {
   archive.put("values", std::move(values));
   archive.put("links", std::move(links));
   archive.put("models", models_);
+  // Versions that know no directions find that leaves are none, and refuse the forest.
+  if (!directions_.empty()) archive.put("directions", directions_.rows());
+}
+
+void Forest::load_directions(const Archive& archive) {
+  const auto& rows = archive.get<std::vector<double>>("directions");
+  const std::size_t width = inputs_ + 1;
+  if (rows.empty() || rows.size() % width != 0 || inputs_ + rows.size() / width > kMaxTreeInputs)
+    invalid("number of directions");
+  if (!all_finite(rows)) invalid("a direction that is not finite");
+  directions_.clear(inputs_);
+  for (std::size_t at = 0; at < rows.size(); at += width)
+    std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(at), width, directions_.add());
 }
 
 Forest Forest::load(const Archive& archive) {
@@ -113,6 +126,7 @@ Forest Forest::load(const Archive& archive) {
   if (links.size() != values.size()) invalid("arrays differ in length");
   Forest forest(inputs, {}, leaf);
   if (shape.size() == 4) forest.aggregation_ = static_cast<Aggregation>(shape[3]);
+  if (archive.has("directions")) forest.load_directions(archive);
   for (std::size_t i = 0; i < outputs; ++i) forest.scales_.push_back({scales[2 * i], scales[2 * i + 1]});
   for (const std::int64_t root : roots) {
     if (root < 0 || root >= static_cast<std::int64_t>(values.size())) invalid("a node that does not exist");
@@ -184,9 +198,9 @@ void Forest::check() const {
   });
   for (const ForestNode& node : nodes_) {
     if (!std::isfinite(node.value)) invalid("a value that is not finite");
-    if ((node.feature() == inputs_) != (node.ahead() == 0))
+    if ((node.feature() == features()) != (node.ahead() == 0))
       invalid("a leaf with children, or a split without");
-    if (node.feature() > inputs_) invalid("a split of no input");
+    if (node.feature() > features()) invalid("a split of no input");
   }
   const std::size_t rows = leaf_ == LeafModel::linear ? leaves() : 0;
   if (models_.size() != rows * model_width(inputs_)) invalid("size of its leaf models");

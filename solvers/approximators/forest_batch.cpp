@@ -18,7 +18,7 @@ static_assert(kAbreast * (kMaxTreeInputs + 1) <= kNumbers);
 struct Points {
   std::size_t first;
   std::size_t size;
-  std::size_t width;                      // inputs and one more
+  std::size_t width;                      // features and one more
   std::array<float, kNumbers> rounded{};  // see place(); the input after the last is NaN
   std::array<double, kMaxPoints> sum;     // over trees
   std::array<double, kMaxPoints> low;     // for linear leaves
@@ -31,10 +31,21 @@ std::size_t place(const Points& points, std::size_t point, std::size_t c) {
   return point / kAbreast * kAbreast * points.width + c * kAbreast + point % kAbreast;
 }
 
-void take(const Matrix& x, Points& points) {
-  for (std::size_t c = 0; c + 1 < points.width; ++c) {
-    const double* column = x.column(c).data() + points.first;
+void take(const Matrix& x, const Directions& directions, Points& points) {
+  const auto round = [&points](std::size_t c, const double* column) {
     for (std::size_t i = 0; i < points.size; ++i) points.rounded[place(points, i, c)] = rounded_up(column[i]);
+  };
+  const std::size_t inputs = x.columns();
+  for (std::size_t c = 0; c < inputs; ++c) round(c, x.column(c).data() + points.first);
+  for (std::size_t j = 0; j < directions.size(); ++j) {
+    double* value = points.sum.data();  // not in use yet
+    std::fill(value, value + points.size, directions.offset(j));
+    for (std::size_t c = 0; c < inputs; ++c) {
+      const double weight = directions.weights(j)[c];
+      const double* column = x.column(c).data() + points.first;
+      for (std::size_t i = 0; i < points.size; ++i) value[i] += weight * column[i];
+    }
+    round(inputs + j, value);
   }
   const std::size_t whole = (points.size + kAbreast - 1) / kAbreast * kAbreast;
   for (std::size_t i = 0; i < whole; ++i) {
@@ -127,14 +138,14 @@ void trim(const Forest& forest, std::size_t output, const Matrix& x, Points& poi
 void Forest::predict_batch(const Matrix& x, Matrix& y) const {
   assert(x.columns() == inputs_ && y.columns() == outputs() && x.rows() == y.rows());
   thread_local Points points;
-  points.width = inputs_ + 1;
+  points.width = features() + 1;
   const bool trims = aggregation_ == Aggregation::trimmed_mean;
   const std::size_t wanted =
       trims ? std::min(kNumbers / points.width, kAllNumbers / trees()) : kNumbers / points.width;
   const std::size_t at_once = std::clamp(wanted / kAbreast * kAbreast, kAbreast, kMaxPoints);
   for (points.first = 0; points.first < x.rows(); points.first += at_once) {
     points.size = std::min(at_once, x.rows() - points.first);
-    take(x, points);
+    take(x, directions_, points);
     for (std::size_t output = 0; output < outputs(); ++output) {
       const std::span<double> means = y.column(output).subspan(points.first, points.size);
       if (trims) {

@@ -30,6 +30,7 @@ ForestModel::Tree exported_tree(const ForestTree& tree) {
 ForestModel exported_forest(const Forest& forest) {
   ForestModel model;
   model.inputs = forest.inputs();
+  model.directions = forest.directions().rows();
   model.linear_leaves = forest.leaf() == LeafModel::linear;
   if (forest.aggregation() == Aggregation::trimmed_mean) model.trimmed = trimmed_on_each_side(forest.trees());
   for (std::size_t output = 0; output < forest.outputs(); ++output) {

@@ -38,8 +38,10 @@ class Growers {
 
 Forest grow_forest(const TrainingSet& set, const Growth& growth, std::size_t trees, const Draws& draws,
                    Parallel& parallel, const TreeKernels& kernels) {
-  const TrainingColumns samples(set);
-  Forest forest(set.x.columns(), samples.scales(), growth.leaf);
+  Directions directions;
+  if (growth.directions > 0) directions = draw_directions(set, growth.directions, draws);
+  const TrainingColumns samples(set, directions);
+  Forest forest(set.x.columns(), samples.scales(), growth.leaf, std::move(directions));
   std::vector<PackedTree> grown(trees * set.y.columns());
   {
     Growers growers;

@@ -17,7 +17,8 @@ struct Growth {
              ///< candidate
   };
   LeafModel leaf = LeafModel::constant;
-  std::size_t candidates = 1;   ///< k: input dimensions tried at each node
+  std::size_t candidates = 1;   ///< k: inputs and directions tried at each node
+  std::size_t directions = 0;   ///< random directions that all trees may split by, besides the inputs
   std::size_t min_samples = 1;  ///< n_min: samples in each leaf at least
   Short too_few = Short::redraw;
   double min_variance = 0;  ///< v_min: nodes with no more variance of the output become leaves

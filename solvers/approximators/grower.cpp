@@ -23,12 +23,12 @@ Grower::Grower(const TrainingColumns& samples, const Growth& growth, const TreeK
       stream_(0),
       columns_(samples.block_size()),
       scratch_(samples.rows() + kLanes),
-      inputs_(samples.inputs()),
-      candidates_(std::min(growth.candidates, samples.inputs())),
+      features_(samples.features()),
+      candidates_(std::min(growth.candidates, samples.features())),
       whole_(growth.leaf == LeafModel::linear ? samples.inputs() : 0),
       low_(whole_),
       high_(whole_) {
-  std::iota(inputs_.begin(), inputs_.end(), 0U);
+  reset_features();
   if (growth.leaf == LeafModel::constant) return;
   centre_.resize(samples.inputs() + 1);
   work_.resize(product_work(samples.inputs()));
@@ -39,7 +39,7 @@ Grower::Grower(const TrainingColumns& samples, const Growth& growth, const TreeK
 PackedTree Grower::grow(std::size_t output, Stream stream) {
   stream_ = stream;
   has_bits_ = false;
-  std::iota(inputs_.begin(), inputs_.end(), 0U);
+  reset_features();
   scale_ = samples_.scales()[output];
   block_ = samples_.block(columns_.data());
   samples_.copy(kernels_, output, block_);
@@ -52,6 +52,11 @@ PackedTree Grower::grow(std::size_t output, Stream stream) {
     make_node(task);
   }
   return tree_;  // a copy, of just the size
+}
+
+void Grower::reset_features() {
+  for (std::size_t i = 0; i < features_.size(); ++i)
+    features_[i] = samples_.column_of(static_cast<std::uint32_t>(i));
 }
 
 void Grower::make_node(const Task& task) {
@@ -73,21 +78,22 @@ void Grower::make_node(const Task& task) {
 // One or two samples, which half of a deep tree's nodes have, at once. Whatever separates two is as good.
 bool Grower::make_pair(const Task& task) {
   const float* y = block_.outputs();
-  const std::size_t inputs = inputs_.size();
+  const std::size_t features = features_.size();
   if (block_.size() == 1) {
-    tree_.nodes[task.node] = ForestNode::leaf(inputs, y[0]);
+    tree_.nodes[task.node] = ForestNode::leaf(features, y[0]);
     return true;
   }
   if (y[0] == y[1]) return false;
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    std::swap(inputs_[i], inputs_[i + ((bits() * (inputs - i)) >> 32)]);
-    const float* x = block_.column(inputs_[i]);
+    std::swap(features_[i], features_[i + ((bits() * (features - i)) >> 32)]);
+    const float* x = block_.column(features_[i]);
     if (x[0] == x[1]) continue;
     const std::size_t low = x[0] < x[1] ? 0 : 1;
     const float threshold = uniform(x[low], x[1 - low]);
-    tree_.nodes[task.node] = ForestNode::split(inputs_[i], threshold, ahead(task.node));
-    tree_.nodes.push_back(ForestNode::leaf(inputs, y[low]));
-    tree_.nodes.push_back(ForestNode::leaf(inputs, y[1 - low]));
+    const std::uint32_t feature = samples_.feature_of(features_[i]);
+    tree_.nodes[task.node] = ForestNode::split(feature, threshold, ahead(task.node));
+    tree_.nodes.push_back(ForestNode::leaf(features, y[low]));
+    tree_.nodes.push_back(ForestNode::leaf(features, y[1 - low]));
     return true;
   }
   return false;
@@ -125,7 +131,8 @@ double Grower::variance() const {
 void Grower::make_split(const Task& task, const Candidate& split) {
   kernels_.partition(block_, split.feature, split.threshold, scratch_.data(), scratch_.size());
   const auto child = static_cast<std::uint32_t>(tree_.nodes.size());
-  tree_.nodes[task.node] = ForestNode::split(split.feature, split.threshold, ahead(task.node));
+  const std::uint32_t feature = samples_.feature_of(split.feature);
+  tree_.nodes[task.node] = ForestNode::split(feature, split.threshold, ahead(task.node));
   tree_.nodes.resize(tree_.nodes.size() + 2);
   const std::size_t middle = task.begin + split.count;
   const Task low{task.begin, middle, child, task.depth + 1};
@@ -137,14 +144,15 @@ void Grower::make_split(const Task& task, const Candidate& split) {
 
 void Grower::make_leaf(const Task& task) {
   const double mean = outputs_.sum / outputs_.weight;
-  const std::size_t inputs = inputs_.size();
+  const std::size_t inputs = samples_.inputs();
   if (growth_.leaf == LeafModel::constant) {
-    tree_.nodes[task.node] = ForestNode::leaf(inputs, static_cast<float>(mean));
+    tree_.nodes[task.node] = ForestNode::leaf(features_.size(), static_cast<float>(mean));
     return;
   }
   const std::size_t width = model_width(inputs);
   const std::size_t first = tree_.models.size();
-  tree_.nodes[task.node] = ForestNode::linear_leaf(inputs, static_cast<std::uint32_t>(first / width));
+  tree_.nodes[task.node] =
+      ForestNode::linear_leaf(features_.size(), static_cast<std::uint32_t>(first / width));
   std::vector<double>& sample = sample_;
   const auto gather = [&](std::size_t row) {
     for (std::size_t c = 0; c <= inputs; ++c) sample[c] = static_cast<double>(block_.column(c)[row]);
@@ -169,7 +177,7 @@ void Grower::make_leaf(const Task& task) {
 // The best of k random splits along distinct dimensions, null when none is possible. Equal ones have equal
 // chances.
 const Candidate* Grower::best_split() {
-  const std::size_t size = draw_thresholds(choose_inputs());
+  const std::size_t size = draw_thresholds(choose_features());
   if (size > 0 && growth_.leaf == LeafModel::linear) prepare_linear_gains();
   const Candidate* best = nullptr;
   double best_gain = 0;
@@ -204,12 +212,12 @@ float Grower::uniform(float low, float high) {
   return value < high ? value : std::nextafter(high, -kInfinity);
 }
 
-// k distinct inputs, of those only the ones that vary; their ranges. Returns how many.
-std::size_t Grower::choose_inputs() {
+// k distinct inputs or directions, of those only the ones that vary; their ranges. Returns how many.
+std::size_t Grower::choose_features() {
   const std::size_t tries = candidates_.size();
   for (std::size_t i = 0; i < tries; ++i) {
-    if (tries < inputs_.size()) std::swap(inputs_[i], inputs_[i + stream_.below(inputs_.size() - i)]);
-    candidates_[i].feature = inputs_[i];
+    if (tries < features_.size()) std::swap(features_[i], features_[i + stream_.below(features_.size() - i)]);
+    candidates_[i].feature = features_[i];
   }
   kernels_.find_ranges(block_, candidates_.data(), tries);
   const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(tries);

@@ -28,13 +28,14 @@ class Grower {
   void make_node(const Task& task);
   bool make_pair(const Task& task);
   std::uint32_t ahead(std::uint32_t node) const;
+  void reset_features();
   bool may_split(const Task& task) const;
   double variance() const;
   void make_split(const Task& task, const Candidate& split);
   void make_leaf(const Task& task);
 
   const Candidate* best_split();
-  std::size_t choose_inputs();
+  std::size_t choose_features();
   std::size_t draw_thresholds(std::size_t size);
   bool narrow(Candidate& candidate);
   double constant_gain(const Candidate& split) const;
@@ -51,7 +52,7 @@ class Grower {
   bool has_bits_ = false;
   std::vector<float> columns_;
   std::vector<float> scratch_;
-  std::vector<std::uint32_t> inputs_;
+  std::vector<std::uint32_t> features_;  // columns of the block
   std::vector<Candidate> candidates_;
   std::vector<Task> tasks_;
   PackedTree tree_;

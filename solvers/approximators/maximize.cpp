@@ -43,7 +43,7 @@ class ExactMaximum {
     trees_ = trees;
     trims_ = aggregation == Aggregation::trimmed_mean;
     box_ = &box;
-    region_.reset(box);
+    region_.reset(box, trees[0].directions);
     best_ = {};
     best_.at.resize(box.low.size());
     found_ = false;
@@ -248,7 +248,8 @@ Maximum maximize(const Forest& forest, std::span<const double> prefix, const Spa
   }
   if (forest.aggregation() == Aggregation::trimmed_mean) check_trimmed(forest, how);
   const bool is_exact = how.method == Maximization::Method::exact;
-  if (is_exact && box.size() == 1 && forest.aggregation() == Aggregation::mean) {
+  const bool is_plain = forest.aggregation() == Aggregation::mean && forest.directions().empty();
+  if (is_exact && box.size() == 1 && is_plain) {
     thread_local LineMaximum line;
     return line.over(forest, prefix, box[0]);
   }
@@ -264,6 +265,7 @@ Maximum maximize(const Forest& forest, std::span<const double> prefix, const Spa
   const std::span<Tree> trees(projected.data(), forest.trees());
   for (std::size_t i = 0; i < trees.size(); ++i) project(forest.tree(0, i), prefix, bounds, trees[i]);
   if (is_exact) {
+    for (const Tree& tree : trees) check_boxes(tree);
     thread_local ExactMaximum exact;
     return exact.over(trees, forest.aggregation(), bounds);
   }

@@ -62,7 +62,7 @@ class MergedTree : public Approximator {
       drop_unused(results[output]);
       if (from.leaf() == LeafModel::constant) scales[output] = scale_constants(results[output]);
     }
-    Forest result(from.inputs(), scales, from.leaf());
+    Forest result(from.inputs(), scales, from.leaf(), results[0].directions);
     for (const Tree& tree : results) result.add(pack(tree));
     return result;
   }

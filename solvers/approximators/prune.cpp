@@ -54,58 +54,71 @@ class MeanAbsolute {
 
 class Pruning {
  public:
-  // Walks the tree once: volumes, parents, number of leaves and the first candidates.
-  void start(Tree& tree, const Box& box) {
+  // Volumes, parents, number of leaves and the first candidates, from each split's share of volume. Volumes
+  // are parts of the box's, over the axes on which it has any width.
+  void start(Tree& tree, const Box& box, std::span<const double> shares) {
     tree_ = &tree;
     box_ = &box;
-    parent_.assign(tree.nodes.size(), -1);
-    volume_.assign(tree.nodes.size(), 0.0);
+    const std::size_t size = tree.nodes.size();
+    parent_.assign(size, kCutOff);
+    volume_.resize(size);
+    parent_[0] = kNone;
+    volume_[0] = 1;
     heap_.clear();
     leaves_ = 0;
-    region_.reset(box);
-    walk(0, 1.0);
+    for (std::size_t i = 0; i < size; ++i) {  // children follow their parents
+      if (parent_[i] == kCutOff) continue;    // by pruning before
+      const auto at = static_cast<std::int32_t>(i);
+      const std::int32_t child = tree.nodes[i].child;
+      if (child == at) {
+        ++leaves_;
+        continue;
+      }
+      parent_[child] = parent_[child + 1] = at;
+      volume_[child] = volume_[i] * shares[i];
+      volume_[child + 1] = volume_[i] * (1 - shares[i]);
+      if (is_preleaf(at)) heap_.push_back({loss(at), at});
+    }
     std::make_heap(heap_.begin(), heap_.end());
   }
 
   void down_to(std::size_t max_leaves) {
     while (leaves_ > max_leaves && !heap_.empty()) {
-      std::pop_heap(heap_.begin(), heap_.end());
-      const std::int32_t node = heap_.back().node;
-      heap_.pop_back();
+      const std::int32_t node = heap_.front().node;
       replace(node);
       --leaves_;
       const std::int32_t above = parent_[node];
       if (above >= 0 && is_preleaf(above)) {
-        heap_.push_back({loss(above), above});
-        std::push_heap(heap_.begin(), heap_.end());
+        put_first({loss(above), above});
+      } else {
+        const Candidate last = heap_.back();
+        heap_.pop_back();
+        if (!heap_.empty()) put_first(last);
       }
     }
   }
 
  private:
+  static constexpr std::int32_t kNone = -1;
+  static constexpr std::int32_t kCutOff = -2;
+
   bool is_leaf(std::int32_t node) const { return tree_->nodes[node].child == node; }
   bool is_preleaf(std::int32_t node) const {
     const std::int32_t child = tree_->nodes[node].child;
     return is_leaf(child) && is_leaf(child + 1);
   }
 
-  // Volumes are parts of the box's, over the axes on which it has any width.
-  void walk(std::int32_t at, double volume) {
-    volume_[at] = volume;
-    if (is_leaf(at)) {
-      ++leaves_;
-      return;
+  // In place of the heap's first candidate.
+  void put_first(const Candidate& candidate) {
+    const std::size_t size = heap_.size();
+    std::size_t at = 0;
+    for (std::size_t child = 1; child < size; child = 2 * at + 1) {
+      if (child + 1 < size && heap_[child] < heap_[child + 1]) ++child;
+      if (!(candidate < heap_[child])) break;
+      heap_[at] = heap_[child];
+      at = child;
     }
-    const TreeNode split = tree_->nodes[at];
-    const auto axis = static_cast<std::size_t>(split.feature);
-    const double low = std::max(region_.low(axis), box_->low[axis]);
-    const double width = region_.high(axis) - low;
-    double part = width > 0 ? std::clamp((split.value - low) / width, 0.0, 1.0) : 0.5;
-    if (box_->high[axis] == box_->low[axis]) part = split.value < box_->low[axis] ? 0.0 : 1.0;
-    parent_[split.child] = parent_[split.child + 1] = at;
-    region_.in_low(axis, split.value, [&] { walk(split.child, volume * part); });
-    region_.in_high(axis, split.value, [&] { walk(split.child + 1, volume * (1 - part)); });
-    if (is_preleaf(at)) heap_.push_back({loss(at), at});
+    heap_[at] = candidate;
   }
 
   // The weights of the two leaves of a preleaf in their mean; halves where both volumes vanish.
@@ -183,7 +196,7 @@ class Pruning {
       for (std::size_t i = 0; i < width; ++i) kept[i] = low * kept[i] + high * other[i];
       value = a.value;
     }
-    node = {value, static_cast<std::int32_t>(tree_->inputs), preleaf};
+    node = {value, static_cast<std::int32_t>(tree_->features()), preleaf};
   }
 
   Tree* tree_ = nullptr;
@@ -192,20 +205,54 @@ class Pruning {
   std::vector<double> volume_;
   std::vector<Candidate> heap_;
   std::size_t leaves_ = 0;
-  Region region_;
   std::vector<double> low_;
   std::vector<double> high_;
   std::vector<double> reach_;
 };
 
+// Each split's share of its volume, by a walk through the tree.
+class Shares {
+ public:
+  const std::vector<double>& of(const Tree& tree, const Box& box) {
+    tree_ = &tree;
+    box_ = &box;
+    shares_.assign(tree.nodes.size(), 0.0);
+    region_.reset(box, tree.directions);
+    walk(0);
+    return shares_;
+  }
+
+ private:
+  void walk(std::int32_t at) {
+    if (tree_->is_leaf(at)) return;
+    const TreeNode& split = tree_->nodes[at];
+    const auto axis = static_cast<std::size_t>(split.feature);
+    shares_[at] = low_share(region_, *box_, axis, split.value);
+    region_.in_low(axis, split.value, [&] { walk(split.child); });
+    region_.in_high(axis, split.value, [&] { walk(split.child + 1); });
+  }
+
+  const Tree* tree_ = nullptr;
+  const Box* box_ = nullptr;
+  Region region_;
+  std::vector<double> shares_;
+};
+
 }  // namespace
 
-void prune(Tree& tree, const Box& box, std::size_t max_leaves) {
-  assert(max_leaves >= 1 && box.low.size() == tree.inputs);
+void prune(Tree& tree, const Box& box, std::size_t max_leaves, std::span<const double> shares) {
+  assert(max_leaves >= 1 && box.low.size() == tree.inputs && shares.size() == tree.nodes.size());
   if ((tree.nodes.size() + 1) / 2 <= max_leaves) return;
+  check_boxes(tree);
   thread_local Pruning pruning;
-  pruning.start(tree, box);
+  pruning.start(tree, box, shares);
   pruning.down_to(max_leaves);
+}
+
+void prune(Tree& tree, const Box& box, std::size_t max_leaves) {
+  if ((tree.nodes.size() + 1) / 2 <= max_leaves) return;
+  thread_local Shares shares;
+  prune(tree, box, max_leaves, shares.of(tree, box));
 }
 
 }  // namespace coppice

@@ -17,7 +17,8 @@ void for_each_row(std::size_t rows, const std::vector<std::size_t>& kept, Work w
 
 }  // namespace
 
-TrainingColumns::TrainingColumns(const TrainingSet& set) : set_(set), rows_(set.x.rows()) {
+TrainingColumns::TrainingColumns(const TrainingSet& set, const Directions& directions)
+    : set_(set), rows_(set.x.rows()), directions_(directions.size()) {
   if (weighted()) {
     const double most = *std::max_element(set.weights.begin(), set.weights.end());
     weight_scale_ = std::ldexp(1.0, -std::max(std::ilogb(most), -1000));
@@ -30,6 +31,22 @@ TrainingColumns::TrainingColumns(const TrainingSet& set) : set_(set), rows_(set.
     }
   }
   for (std::size_t output = 0; output < set.y.columns(); ++output) scales_.push_back(scale_of(output));
+  compute(directions);
+}
+
+// In double precision from the samples themselves, as predictions do it.
+void TrainingColumns::compute(const Directions& directions) {
+  oblique_.reserve(directions.size() * rows_);
+  std::vector<double> value(directions.empty() ? 0 : rows_);
+  for (std::size_t j = 0; j < directions.size(); ++j) {
+    std::fill(value.begin(), value.end(), directions.offset(j));
+    for (std::size_t c = 0; c < inputs(); ++c) {
+      const double weight = directions.weights(j)[c];
+      const auto x = set_.x.column(c);
+      for_each_row(rows_, kept_, [&](std::size_t i, std::size_t row) { value[i] += weight * x[row]; });
+    }
+    std::transform(value.begin(), value.end(), std::back_inserter(oblique_), rounded_up);
+  }
 }
 
 OutputScale TrainingColumns::scale_of(std::size_t output) const {
@@ -43,6 +60,7 @@ SampleBlock TrainingColumns::block(float* columns) const {
   SampleBlock block;
   block.columns = columns;
   block.inputs = inputs();
+  block.directions = directions_;
   block.weighted = weighted();
   block.end = rows_;
   block.stride = (rows_ + 2 * kLanes - 1) / kLanes * kLanes;
@@ -66,6 +84,8 @@ void TrainingColumns::copy(const TreeKernels& kernels, std::size_t output, const
       for_each_row(rows_, kept_, [&](std::size_t i, std::size_t row) { to[i] = rounded_up(from[row]); });
     }
   }
+  for (std::size_t j = 0; j < directions_; ++j)
+    std::copy_n(oblique_.data() + j * rows_, rows_, block.column(block.first_direction() + j));
   const auto y = set_.y.column(output);
   const OutputScale scale = scales_[output];
   float* outputs = block.column(inputs());

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "solvers/approximators/directions.h"
+
 namespace coppice {
 
-/// More inputs than this are refused; a prediction copies its input to the stack.
+/// More inputs and directions than this are refused; a prediction copies them to the stack.
 inline constexpr std::size_t kMaxTreeInputs = 255;
 /// Deeper trees are neither grown nor read: the operations on trees are recursive.
 inline constexpr int kMaxTreeDepth = 1000;
@@ -23,8 +25,8 @@ constexpr std::size_t model_width(std::size_t inputs) {
 }
 
 /// One node of a tree that is worked on. A split sends x[feature] <= value to node `child` and the rest to
-/// `child + 1`. A leaf has feature == inputs and itself as child; its value is its constant, or the row of
-/// its linear model.
+/// `child + 1`; features from `inputs` on are the tree's directions. A leaf has the feature after the last
+/// and itself as child; its value is its constant, or the row of its linear model.
 struct TreeNode {
   double value = 0;
   std::int32_t feature = 0;
@@ -39,7 +41,9 @@ struct Tree {
   LeafModel leaf = LeafModel::constant;
   std::vector<TreeNode> nodes;
   std::vector<double> models;  ///< linear leaves: rows of model_width(inputs) numbers
+  Directions directions;       ///< of its oblique splits
 
+  std::size_t features() const { return inputs + directions.size(); }
   bool is_leaf(std::int32_t node) const { return nodes[node].child == node; }
   const double* model(std::int32_t node) const {
     return models.data() + static_cast<std::size_t>(nodes[node].value) * model_width(inputs);

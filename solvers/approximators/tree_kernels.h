@@ -7,17 +7,20 @@
 namespace coppice {
 
 /// Rows [begin, end) of training samples in single precision, column after column: the inputs, the output,
-/// and the weights unless all are 1. Each column is followed by kLanes numbers that may be read.
+/// the weights unless all are 1, and the directions of oblique splits. Each column is followed by kLanes
+/// numbers that may be read.
 struct SampleBlock {
   float* columns = nullptr;
   std::size_t stride = 0;  ///< from one column to the next
   std::size_t inputs = 0;
+  std::size_t directions = 0;
   bool weighted = false;
   std::size_t begin = 0;
   std::size_t end = 0;
 
   std::size_t size() const { return end - begin; }
-  std::size_t width() const { return inputs + (weighted ? 2 : 1); }
+  std::size_t width() const { return first_direction() + directions; }
+  std::size_t first_direction() const { return inputs + (weighted ? 2 : 1); }
   /// Where the block begins in a column.
   float* column(std::size_t c) const { return columns + c * stride + begin; }
   const float* outputs() const { return column(inputs); }
@@ -26,8 +29,8 @@ struct SampleBlock {
 
 /// A split that is tried: where its threshold may lie, and what it sends to the low side, x <= threshold.
 struct Candidate {
-  std::uint32_t feature = 0;
-  float low = 0;  ///< thresholds are in [low, high)
+  std::uint32_t feature = 0;  ///< a column of the block
+  float low = 0;              ///< thresholds are in [low, high)
   float high = 0;
   float threshold = 0;
   std::size_t count = 0;

@@ -36,6 +36,16 @@ double linear(const double* bias_and_slopes, const double* x, std::size_t inputs
   return sum;
 }
 
+/// The inputs, then the directions.
+std::vector<double> features(const Json& function, const double* x) {
+  const auto inputs = function.at("inputs").get<std::size_t>();
+  std::vector<double> all(x, x + inputs);
+  if (!function.contains("directions")) return all;
+  const auto rows = function.at("directions").get<std::vector<double>>();
+  for (std::size_t at = 0; at < rows.size(); at += inputs + 1) all.push_back(linear(&rows[at], x, inputs));
+  return all;
+}
+
 std::size_t leaf_of(const Json& tree, const double* x) {
   std::size_t node = 0;
   while (tree.at("child")[node] != 0) {
@@ -71,8 +81,9 @@ double forest(const Json& function, const Json& output, const double* x) {
   const auto inputs = function.at("inputs").get<std::size_t>();
   const auto trees = static_cast<double>(output.at("trees").size());
   std::vector<double> values, lows, highs;
+  const std::vector<double> split_by = features(function, x);
   for (const Json& tree : output.at("trees")) {
-    const std::size_t leaf = leaf_of(tree, x);
+    const std::size_t leaf = leaf_of(tree, split_by.data());
     if (!is_linear) {
       values.push_back(tree.at("value")[leaf]);
       continue;
@@ -187,6 +198,8 @@ TEST(Exports, SayWhatTheyCannotExpress) {
   EXPECT_TRUE(
       contains(refusal(fitted("t", "<extra_trees trees=\"3\" aggregation=\"trimmed_mean\"/>"), "onnx"),
                "cannot express their trimmed mean"));
+  EXPECT_TRUE(contains(refusal(fitted("o", "<extra_trees trees=\"3\" splits=\"oblique\"/>"), "onnx"),
+                       "cannot express oblique splits"));
   EXPECT_EQ(refusal(still, "jsn"), "there is no export format 'jsn'; did you mean 'json'?");
   still.name = "double";
   EXPECT_TRUE(contains(refusal(still, "cpp"), "a meaning of its own in C++"));

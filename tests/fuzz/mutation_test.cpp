@@ -183,16 +183,16 @@ TEST(Mutations, OfConfigsAreAcceptedOrRefused) {
   EXPECT_LT(accepted, kCount / 2);
 }
 
-/// Forests of both kinds of leaves, learned on the spot.
-std::string learned(const std::string& leaves) {
+/// Forests of some kind, learned on the spot.
+std::string learned(const std::string& attributes) {
   const TemporaryFolder folder;
   const std::string config =
       "<experiment coppice=\"1\" seed=\"5\"><problem id=\"p\"><double_integrator/></problem><policy "
       "id=\"any\">"
       "<random/></policy><collect id=\"c\" problem=\"p\" policy=\"any\" episodes=\"3\" horizon=\"20\"/>"
       "<train id=\"t\" problem=\"p\" samples=\"c\"><fpf iterations=\"2\" policy_samples=\"100\"><q_value>"
-      "<extra_trees trees=\"2\"/></q_value><policy><extra_trees trees=\"3\" leaves=\"" +
-      leaves + "\"/></policy></fpf></train></experiment>";
+      "<extra_trees trees=\"2\"/></q_value><policy><extra_trees trees=\"3\" " +
+      attributes + "/></policy></fpf></train></experiment>";
   RunOptions options;
   options.out = folder / "out";
   options.threads = 1;
@@ -233,7 +233,7 @@ std::string consistent(std::string bytes) {
   return bytes;
 }
 
-// For both kinds of leaves together: more than 10^5 mutations.
+// For each kind more than 5 10^4 mutations.
 class PolicyMutations : public testing::TestWithParam<const char*> {};
 
 TEST_P(PolicyMutations, AreRefused) {
@@ -289,7 +289,9 @@ TEST_P(PolicyMutations, ThatAreConsistentAreRefusedOrCanAct) {
   EXPECT_LT(accepted, kCount * 9 / 10);
 }
 
-INSTANTIATE_TEST_SUITE_P(Leaves, PolicyMutations, testing::Values("pwc", "pwl"));
+INSTANTIATE_TEST_SUITE_P(Forests, PolicyMutations,
+                         testing::Values("leaves=\"pwc\"", "leaves=\"pwl\"",
+                                         "splits=\"oblique\" directions=\"5\""));
 
 }  // namespace
 }  // namespace coppice

@@ -23,6 +23,14 @@ function inside(value, axis) {
   return clamp(value, low, high);
 }
 
+/** The inputs, then the directions: what splits go by. */
+function features(model, x) {
+  const all = [...x], rows = model.directions ?? [], width = x.length + 1;
+  for (let at = 0; at < rows.length; at += width)
+    all.push(x.reduce((value, xi, i) => value + rows[at + 1 + i] * xi, rows[at]));
+  return all;
+}
+
 function leafOf(tree, x) {
   let node = 0;
   while (tree.child[node] !== 0) node = tree.child[node] + (x[tree.index[node]] > tree.value[node] ? 1 : 0);
@@ -31,7 +39,8 @@ function leafOf(tree, x) {
 
 function forest(model, output, x) {
   const count = output.trees.length, width = model.inputs + 3;
-  const leaves = output.trees.map((tree) => leafOf(tree, x));
+  const splitBy = features(model, x);
+  const leaves = output.trees.map((tree) => leafOf(tree, splitBy));
   let mean;
   if (model.leaves === "constant") {
     const values = leaves.map((leaf, i) => output.trees[i].value[leaf]);

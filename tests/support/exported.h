@@ -80,6 +80,8 @@ inline std::vector<TestPolicy> test_policies() {
       fitted("trimmed_pwc", "<extra_trees trees=\"12\" aggregation=\"trimmed_mean\"/>", 500),
       fitted("trimmed_many", "<extra_trees trees=\"70\" aggregation=\"trimmed_mean\"/>", 100),
       fitted("trimmed_pwl", "<extra_trees trees=\"12\" leaves=\"pwl\" aggregation=\"trimmed_mean\"/>", 500),
+      fitted("oblique_pwc", "<extra_trees trees=\"25\" splits=\"oblique\"/>"),
+      fitted("oblique_pwl", "<extra_trees trees=\"10\" leaves=\"pwl\" splits=\"oblique\"/>", 500),
       fitted("tree", "<regression_tree/>"),
       fitted("leaf", "<regression_tree/>", 1),
       fitted("linear", "<linear/>"),

@@ -22,11 +22,24 @@ struct TreeShape {
   std::size_t inputs = 2;
   LeafModel leaf = LeafModel::constant;
   int depth = 4;  ///< at most
+  const Directions* directions = nullptr;
+
+  std::size_t features() const { return inputs + (directions == nullptr ? 0 : directions->size()); }
 };
+
+/// Weights and offsets in [-1, 1]; some weights are 0.
+inline Directions random_directions(Stream& stream, std::size_t inputs, std::size_t size) {
+  Directions directions(inputs);
+  for (std::size_t j = 0; j < size; ++j) {
+    double* row = directions.add();
+    for (std::size_t i = 0; i <= inputs; ++i) row[i] = stream.below(4) == 0 ? 0 : eighth(stream, -1, 1);
+  }
+  return directions;
+}
 
 inline void grow_at_random(Stream& stream, const TreeShape& shape, Tree& tree, std::int32_t at, int depth) {
   if (depth == 0 || stream.below(4) == 0) {
-    tree.nodes[at] = {eighth(stream, -2, 2), static_cast<std::int32_t>(shape.inputs), at};
+    tree.nodes[at] = {eighth(stream, -2, 2), static_cast<std::int32_t>(shape.features()), at};
     if (shape.leaf == LeafModel::constant) return;
     tree.nodes[at].value = static_cast<double>(tree.models.size() / model_width(shape.inputs));
     for (std::size_t i = 0; i <= shape.inputs; ++i) tree.models.push_back(eighth(stream, -2, 2));
@@ -37,7 +50,7 @@ inline void grow_at_random(Stream& stream, const TreeShape& shape, Tree& tree, s
   }
   const auto child = static_cast<std::int32_t>(tree.nodes.size());
   tree.nodes.resize(tree.nodes.size() + 2);
-  tree.nodes[at] = {eighth(stream, -1, 1), static_cast<std::int32_t>(stream.below(shape.inputs)), child};
+  tree.nodes[at] = {eighth(stream, -1, 1), static_cast<std::int32_t>(stream.below(shape.features())), child};
   grow_at_random(stream, shape, tree, child, depth - 1);
   grow_at_random(stream, shape, tree, child + 1, depth - 1);
 }
@@ -48,6 +61,7 @@ inline Tree random_tree(Stream& stream, const TreeShape& shape) {
   tree.inputs = shape.inputs;
   tree.leaf = shape.leaf;
   tree.nodes.resize(1);
+  if (shape.directions != nullptr) tree.directions = *shape.directions;
   grow_at_random(stream, shape, tree, 0, shape.depth);
   return tree;
 }
@@ -79,7 +93,10 @@ inline std::int32_t leaf_at(const Tree& tree, std::span<const double> x) {
   std::int32_t node = 0;
   while (tree.nodes[node].child != node) {
     const TreeNode& split = tree.nodes[node];
-    node = x[static_cast<std::size_t>(split.feature)] <= split.value ? split.child : split.child + 1;
+    const auto feature = static_cast<std::size_t>(split.feature);
+    const double at =
+        feature < tree.inputs ? x[feature] : tree.directions.value(feature - tree.inputs, x.data());
+    node = at <= split.value ? split.child : split.child + 1;
   }
   return node;
 }
@@ -115,7 +132,7 @@ inline std::vector<std::int32_t> leaves_of(const Tree& tree, std::int32_t node =
 
 /// A forest of one output, without rounding for the trees above.
 inline Forest forest_of(const std::vector<Tree>& trees) {
-  Forest forest(trees[0].inputs, {OutputScale{}}, trees[0].leaf);
+  Forest forest(trees[0].inputs, {OutputScale{}}, trees[0].leaf, trees[0].directions);
   for (const Tree& tree : trees) forest.add(pack(tree));
   return forest;
 }
