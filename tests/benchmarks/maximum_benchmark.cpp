@@ -90,6 +90,7 @@ BEST_ACTION(smooth_2x1_pwc_10, Value::smooth, 2, 1, "n_min=\"10\"");
 BEST_ACTION(friedman_2x1_pwc_10, Value::friedman, 2, 1, "n_min=\"10\"");
 BEST_ACTION(smooth_2x1_pwc_2, Value::smooth, 2, 1, "n_min=\"2\"");
 BEST_ACTION(smooth_2x1_pwl_50, Value::smooth, 2, 1, "leaves=\"pwl\" n_min=\"50\"");
+BEST_ACTION(friedman_2x1_pwl_50, Value::friedman, 2, 1, "leaves=\"pwl\" n_min=\"50\"");
 BEST_ACTION(smooth_6x3_pwc_10, Value::smooth, 6, 3, "n_min=\"10\"");
 BEST_ACTION(friedman_6x3_pwc_10, Value::friedman, 6, 3, "n_min=\"10\"");
 BEST_ACTION(smooth_6x3_pwl_99, Value::smooth, 6, 3, "leaves=\"pwl\" n_min=\"99\"");
