@@ -25,9 +25,9 @@ struct LinearModel {
   bool bias_last = false;
 };
 
-/// Trees, equally many for each output, over the inputs and, behind them, the directions: weighted sums of the
-/// inputs, each its offset + weights[0] x[0] + ..., summed from the left. x[i] below is feature i, of inputs
-/// and directions.
+/// Trees, equally many for each output, over the inputs and, behind them, the directions: weighted sums of
+/// the inputs, each its offset + weights[0] x[0] + ..., summed from the left. x[i] below is feature i, of
+/// inputs and directions.
 struct ForestModel {
   /// A split leads to the node after `child` of its tree where x[index] > `value`, else (also for NaN) to
   /// `child`. Without a child it is a leaf: of `value`, or with the linear model number `index` of its tree.
