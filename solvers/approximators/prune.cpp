@@ -227,7 +227,7 @@ class Shares {
     if (tree_->is_leaf(at)) return;
     const TreeNode& split = tree_->nodes[at];
     const auto axis = static_cast<std::size_t>(split.feature);
-    shares_[at] = low_share(region_, *box_, axis, split.value);
+    shares_[at] = low_share(region_.low(axis), region_.high(axis), *box_, axis, split.value);
     region_.in_low(axis, split.value, [&] { walk(split.child); });
     region_.in_high(axis, split.value, [&] { walk(split.child + 1); });
   }

@@ -76,14 +76,14 @@ class Region {
   std::vector<double> high_;
 };
 
-/// The part of the region's volume that is on the low side of a split along an axis. Where the box has no
-/// width all is on one side; where rounding leaves the region none, halves.
-inline double low_share(const Region& region, const Box& box, std::size_t axis, double threshold) {
+/// The part of a region's volume that is on the low side of a split along an axis on which it is low < x <=
+/// high. Where the box has no width all is on one side; where rounding leaves the region none, halves.
+inline double low_share(double low, double high, const Box& box, std::size_t axis, double threshold) {
   if (axis >= box.low.size()) return 0.5;  // oblique: not known, and not asked for
   if (box.high[axis] == box.low[axis]) return threshold < box.low[axis] ? 0.0 : 1.0;
-  const double low = std::max(region.low(axis), box.low[axis]);
-  const double width = region.high(axis) - low;
-  return width > 0 ? std::clamp((threshold - low) / width, 0.0, 1.0) : 0.5;
+  const double begin = std::max(low, box.low[axis]);
+  const double width = high - begin;
+  return width > 0 ? std::clamp((threshold - begin) / width, 0.0, 1.0) : 0.5;
 }
 
 /// Where in the region a linear model is largest along an axis: at one end, which belongs to the region, or
