@@ -107,6 +107,22 @@ void shorten(std::string& text) {
       fmt::format("{} ... ({} bytes left out) ... {}", text.substr(0, head), tail - head, text.substr(tail));
 }
 
+/// A message without what is quoted in it and without its numbers.
+std::string form_of(std::string_view message) {
+  std::string form;
+  char quote = 0;
+  for (const char c : message) {
+    if (quote == 0 && (c == '\'' || c == '"')) {
+      quote = c;
+    } else if (c == quote) {
+      quote = 0;
+    } else if (quote == 0 && std::string_view("0123456789+-.").find(c) == std::string_view::npos) {
+      form += c;
+    }
+  }
+  return form;
+}
+
 std::vector<Diagnostic> in_order(std::vector<Diagnostic> diagnostics) {
   for (Diagnostic& diagnostic : diagnostics) {
     shorten(diagnostic.message);
@@ -171,11 +187,21 @@ void Diagnostics::error(const Place& place, std::string message, std::string hin
   if (all_.size() >= kMost) return;
   shorten(message);
   shorten(hint);
-  Diagnostic diagnostic{place, std::move(message), std::move(hint), std::move(notes)};
-  if (seen_
-          .insert(fmt::format("{}\n{}\n{}\n{}", path_of(place), place.line, place.column, diagnostic.message))
-          .second) {
-    all_.push_back(std::move(diagnostic));
+  const std::string where = fmt::format("{}\n{}\n{}\n", path_of(place), place.line, place.column);
+  if (!seen_.insert(where + message).second) return;
+  // Of mistakes at one place that differ in what is quoted and in numbers only, as one that is repeated by
+  // the points of a sweep does, the first three are said.
+  const std::string form = where + "alike\n" + form_of(message);
+  const bool kept = place.line == 0 || seen_.insert(form + "1").second || seen_.insert(form + "2").second ||
+                    seen_.insert(form + "3").second;
+  if (kept) {
+    all_.push_back({place, std::move(message), std::move(hint), std::move(notes)});
+  } else if (seen_.insert(form + "more").second) {
+    const auto last = std::find_if(all_.rbegin(), all_.rend(), [&](const Diagnostic& earlier) {
+      return path_of(earlier.place) == path_of(place) && earlier.place.line == place.line &&
+             earlier.place.column == place.column && form_of(earlier.message) == form_of(message);
+    });
+    last->notes.emplace_back("and more like it here");
   }
 }
 

@@ -45,6 +45,7 @@ std::string read_text(const std::string& text, std::optional<std::string>& value
 std::string read_text(const std::string& text, std::uint64_t& value) {
   const char* end = text.data() + text.size();
   const auto [stop, failure] = std::from_chars(text.data(), end, value);
+  if (failure == std::errc::result_out_of_range) return "must be an integer below 2^64";
   const bool good = failure == std::errc() && stop == end;
   return good ? std::string() : std::string("must be an integer >= 0");
 }

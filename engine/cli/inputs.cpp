@@ -89,9 +89,13 @@ void require_file(const CommandLine& line, const std::string& argument) {
     const std::string target = fs::read_symlink(argument, ignored).string();
     throw line.error(argument, "'" + argument + "' is a link to '" + target + "', which is not there");
   }
-  const std::string near = nearest_path(argument);
-  throw line.error(argument, "there is no file '" + argument + "'",
-                   near.empty() ? "" : "did you mean '" + near + "'?");
+  std::string hint;
+  if (const std::string near = nearest_path(argument); !near.empty()) {
+    hint = "did you mean '" + near + "'?";
+  } else if (const std::size_t equals = argument.find('='); equals != std::string::npos && equals > 0) {
+    hint = "arguments are set with ':=': " + argument.substr(0, equals) + ":" + argument.substr(equals);
+  }
+  throw line.error(argument, "there is no file '" + argument + "'", hint);
 }
 
 std::vector<ExperimentConfig> expand_all(const CommandLine& line, const ConfigInputs& inputs) {

@@ -21,6 +21,7 @@ void Expander::include(const Element& element, const Context& context, Element* 
     if (child.name != "arg" || !check_control(child, *find_control("arg", "include"), nullptr, diagnostics_))
       continue;
     const Attribute& name = *child.find("name");
+    passed.names.emplace(name.value, name.value_place);
     if (!passed.values.emplace(name.value, *child.find("value")).second) {
       diagnostics_.error(name.value_place, fmt::format("'{}' is passed a second time", name.value));
     }
@@ -99,10 +100,10 @@ void Expander::check_included_root(const LoadedFile& file, const std::shared_ptr
 
 /// Every argument passed must have been declared.
 void Expander::check_passed(const PassedArguments& passed, const std::string& file) {
-  for (const auto& [name, value] : passed.values) {
+  for (const auto& [name, place] : passed.names) {
     if (passed.taken.contains(name)) continue;
     const std::string hint = passed.declared.empty() ? "it declares none" : suggestion(name, passed.declared);
-    diagnostics_.error(value.value_place, fmt::format("{} declares no argument '{}'", file, name), hint);
+    diagnostics_.error(place, fmt::format("{} declares no argument '{}'", file, name), hint);
   }
 }
 

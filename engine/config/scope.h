@@ -57,8 +57,9 @@ class Scope {
 /// What <include> passes to the arguments of a file.
 struct PassedArguments {
   std::map<std::string, Attribute, std::less<>> values;
-  std::set<std::string> taken;        ///< of `values`, those that an <arg> declared
-  std::vector<std::string> declared;  ///< every argument declared while the file was expanded
+  std::map<std::string, Place, std::less<>> names;  ///< where each stands
+  std::set<std::string> taken;                      ///< of `values`, those that an <arg> declared
+  std::vector<std::string> declared;                ///< every argument declared while the file was expanded
   PassedArguments* outer = nullptr;
 };
 

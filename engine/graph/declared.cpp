@@ -32,6 +32,7 @@ class ElementReader {
     if (info == nullptr) {
       diagnostics_.error(element.place, fmt::format("there is no node kind <{}>", element.name),
                          suggestion(element.name, kinds_));
+      declarations_.of_unknown_kind.emplace(trim(element.get("id")));
       return;
     }
     DeclaredNode* node = node_of(given, *info);
@@ -63,6 +64,7 @@ class ElementReader {
     if (id != nullptr && !is_name(name)) {
       diagnostics_.error(place_of(id, element), fmt::format("id=\"{}\" is no name", id->value),
                          "a name has letters, digits, '_' and '-', and starts with a letter or '_'");
+      make<Node>(element, diagnostics_);  // reports its other mistakes
       return nullptr;
     }
     if (id == nullptr) {  // reading the element reports it
@@ -78,6 +80,7 @@ class ElementReader {
                        first.file ? std::vector<std::string>{fmt::format("first used at {}:{}",
                                                                          first.file->path, first.line)}
                                   : std::vector<std::string>{});
+    make<Node>(element, diagnostics_);
     return nullptr;
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,7 @@ struct DeclaredNode {
 struct Declarations {
   std::vector<DeclaredNode> nodes;
   std::vector<std::size_t> order;
+  std::set<std::string, std::less<>> of_unknown_kind;  ///< ids of elements that are no node kind
 };
 
 /// Where an attribute's value stands; the element's place when it is not given.

@@ -32,7 +32,7 @@ class ReferenceReader {
         const Place place = place_of_item(*given, id, element);
         const auto target = by_id_.find(id);
         if (target == by_id_.end()) {
-          unknown(parameter, id, place);
+          if (!declarations_.of_unknown_kind.contains(id)) unknown(parameter, id, place);
           declared.sound = false;
         } else if (seen.insert(id).second) {  // reading the element reports what stands twice
           reference.targets.push_back({target->second, place});
@@ -87,7 +87,10 @@ class ReferenceReader {
   std::vector<std::string> makers(const std::string& artifact) {
     std::vector<std::string> ids;
     for (std::size_t i = 0; i < declarations_.nodes.size(); ++i) {
-      if (makes(i, artifact)) ids.push_back(declarations_.nodes[i].id);
+      const std::vector<DeclaredElement>& elements = declarations_.nodes[i].elements;
+      const bool broken = elements.empty() || std::any_of(elements.begin(), elements.end(),
+                                                          [](const auto& element) { return !element.node; });
+      if (!broken && makes(i, artifact)) ids.push_back(declarations_.nodes[i].id);
     }
     return ids;
   }
