@@ -121,7 +121,8 @@ struct TableNode : Node {
         {"iqm_ci95_low", Type::number, "",
          "Lower end of the 95 % interval of iqm over replicates, from 5 on (that of a trimmed mean)."},
         {"iqm_ci95_high", Type::number, "", "Upper end of that interval."},
-        {"caution", Type::text, "", "Why the interval of the mean may cover less than 95 %; else empty."}};
+        {"caution", Type::text, "", "Why the interval of the mean may cover less than 95 %; else empty."},
+        {"median", Type::number, "", "Median of the replicates."}};
     table.columns.insert(table.columns.end(), columns_of_values.begin(), columns_of_values.end());
   }
 
@@ -141,6 +142,7 @@ struct TableNode : Node {
                          : optimality_gap(summary.replicates, target, require_better(metric, better)));
     add_interval(row, summary.iqm_ci95);
     row.push_back(summary.caution.empty() ? Cell() : Cell(summary.caution));
+    row.emplace_back(estimate.median);
   }
   static void add_interval(std::vector<Cell>& row, const std::optional<Interval>& interval) {
     row.emplace_back(interval ? interval->low : kMissing);
@@ -150,7 +152,7 @@ struct TableNode : Node {
 
 const Component<Node, TableNode> kComponent(
     "table", "Summarize evaluations: mean, interval, interquartile mean, worst and best of replicates.",
-    "Agarwal et al. 2021 (interquartile mean, optimality gap)", 6);
+    "Agarwal et al. 2021 (interquartile mean, optimality gap)", 7);
 
 }  // namespace
 }  // namespace coppice

@@ -103,6 +103,7 @@ TEST_F(TableTest, SummarizesTrainingRuns) {
   EXPECT_NEAR(value(table, 0, "ci95_low"), 3 - half, 1e-9) << "the deviation over episodes plays no part";
   EXPECT_NEAR(value(table, 0, "ci95_high"), 3 + half, 1e-9);
   EXPECT_NEAR(value(table, 0, "iqm"), 2.5, 1e-12);
+  EXPECT_NEAR(value(table, 0, "median"), 2.5, 1e-12);
   EXPECT_EQ(value(table, 0, "worst"), 6);
   EXPECT_EQ(value(table, 0, "best"), 1);
 }

@@ -7,6 +7,8 @@ namespace {
 
 /// A family of test functions under a name; other nodes draw from it.
 struct ObjectiveNode : Node {
+  static constexpr const char* kExample = "<objective id=\"f\"><sphere n=\"10\"/></objective>";
+
   Sub<Objective> objective;
 
   std::vector<std::string> makes() const override { return {"objective"}; }

@@ -14,6 +14,10 @@ namespace {
 
 /// Looks for the numbers with which a configured policy does best, or a test function is largest.
 struct OptimizeNode : Node {
+  static constexpr const char* kExample =
+      "<optimize id=\"tuned\" problem=\"car\" policy=\"by_hand\" parameters=\"gains\" "
+      "budget=\"300\"><cma_es/></optimize>";
+
   using Node::check;
 
   Reference problem, policy, objective;
