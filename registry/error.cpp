@@ -107,18 +107,11 @@ void shorten(std::string& text) {
       fmt::format("{} ... ({} bytes left out) ... {}", text.substr(0, head), tail - head, text.substr(tail));
 }
 
-/// A message without what is quoted in it and without its numbers.
+/// A message without its numbers.
 std::string form_of(std::string_view message) {
   std::string form;
-  char quote = 0;
   for (const char c : message) {
-    if (quote == 0 && (c == '\'' || c == '"')) {
-      quote = c;
-    } else if (c == quote) {
-      quote = 0;
-    } else if (quote == 0 && std::string_view("0123456789+-.").find(c) == std::string_view::npos) {
-      form += c;
-    }
+    if (std::string_view("0123456789+-.").find(c) == std::string_view::npos) form += c;
   }
   return form;
 }
@@ -189,11 +182,11 @@ void Diagnostics::error(const Place& place, std::string message, std::string hin
   shorten(hint);
   const std::string where = fmt::format("{}\n{}\n{}\n", path_of(place), place.line, place.column);
   if (!seen_.insert(where + message).second) return;
-  // Of mistakes at one place that differ in what is quoted and in numbers only, as one that is repeated by
-  // the points of a sweep does, the first three are said.
+  // Of mistakes at one place that differ in numbers only, as one that the points of a sweep repeat does, the
+  // first ten are said.
   const std::string form = where + "alike\n" + form_of(message);
-  const bool kept = place.line == 0 || seen_.insert(form + "1").second || seen_.insert(form + "2").second ||
-                    seen_.insert(form + "3").second;
+  bool kept = place.line == 0;
+  for (char i = '0'; i <= '9' && !kept; ++i) kept = seen_.insert(form + i).second;
   if (kept) {
     all_.push_back({place, std::move(message), std::move(hint), std::move(notes)});
   } else if (seen_.insert(form + "more").second) {
