@@ -1,12 +1,17 @@
 #include <fcntl.h>
+#include <malloc.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/cli/command.h"
@@ -82,13 +87,30 @@ void occupy_standard_descriptors() {
   }
 }
 
+/// A plan of ten thousand nodes is millions of small objects: with large pages, and freed ones not merged
+/// again and again, it is made in two thirds of the time. Reserves addresses, not memory; a node with a limit
+/// of its memory, which counts addresses, goes without.
+void use_large_pages(const std::vector<std::string>& arguments) {
+  if (!arguments.empty() && arguments.front() == "node") return;
+  constexpr std::uintptr_t kReserved = std::uintptr_t{256} << 20, kPage = std::uintptr_t{2} << 20;
+  ::mallopt(M_MXFAST, 0);
+  ::mallopt(M_TOP_PAD, kReserved);
+  void* const kept = std::malloc(kPage / 32);  // what extends the heap
+  const std::uintptr_t begin = (reinterpret_cast<std::uintptr_t>(kept) + kPage - 1) / kPage * kPage;
+  const std::uintptr_t end = reinterpret_cast<std::uintptr_t>(::sbrk(0)) / kPage * kPage;
+  if (kept != nullptr && begin < end) ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+  std::free(kept);
+}
+
 }  // namespace
 }  // namespace coppice::cli
 
 int main(int argc, char** argv) {
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  coppice::cli::use_large_pages(arguments);
   coppice::cli::occupy_standard_descriptors();
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is seen where it is written to
   coppice::cli::Console console;
   console.set_color("auto");
-  return coppice::cli::guarded(std::vector<std::string>(argv + 1, argv + argc), console);
+  return coppice::cli::guarded(std::move(arguments), console);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <thread>
 #include <unordered_map>
 
 #include "engine/graph/events.h"
@@ -89,14 +90,33 @@ class Inspector {
   Inspector(const Plan& plan, const std::filesystem::path& out)
       : plan_(plan), folder_(out / plan.experiment.name), store_(out / "store") {}
 
-  NodeStatus status(std::size_t index, bool forced) const {
+  /// Which results lie in the folder as a run left them: a look at the date of each file, by all cores.
+  std::vector<char> placed() const {
+    std::vector<char> placed(plan_.nodes.size());
+    const std::size_t workers =
+        plan_.nodes.size() < 500 ? 1 : std::max(1U, std::thread::hardware_concurrency());
+    const auto look = [&](std::size_t worker) {
+      const std::size_t count = placed.size();
+      for (std::size_t i = worker * count / workers; i < (worker + 1) * count / workers; ++i) {
+        if (!plan_.nodes[i].definition) placed[i] = folder_.intact(plan_.nodes[i]) ? 1 : 0;
+      }
+    };
+    {
+      std::vector<std::jthread> threads;
+      for (std::size_t worker = 1; worker < workers; ++worker) threads.emplace_back(look, worker);
+      look(0);
+    }  // the threads end
+    return placed;
+  }
+
+  NodeStatus status(std::size_t index, bool placed, bool forced) const {
     const PlannedNode& node = plan_.nodes[index];
     NodeStatus status;
     if (node.definition) {
       status.reason = Reason::definition;
       return status;
     }
-    status.placed = folder_.intact(node);
+    status.placed = placed;
     if (forced) {
       status.reason = Reason::forced;
       status.runs = true;
@@ -146,8 +166,9 @@ class Inspector {
 std::vector<NodeStatus> inspect_dates(const Plan& plan, const Selected& selected,
                                       const Inspector& inspector) {
   std::vector<NodeStatus> statuses(plan.nodes.size());
+  const std::vector<char> placed = inspector.placed();
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
-    statuses[i] = inspector.status(i, selected.forced[i]);
+    statuses[i] = inspector.status(i, placed[i] != 0, selected.forced[i]);
     if (!selected.in[i] && !plan.nodes[i].definition) {
       statuses[i].reason = Reason::not_selected;
       statuses[i].runs = false;
