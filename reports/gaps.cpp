@@ -11,27 +11,12 @@ namespace coppice {
 namespace {
 
 /// How near to the optimum the points lie that searches return, whatever they tried.
-struct GapsNode : Node {
-  References of;
-  std::vector<std::string> rows;
-
-  std::vector<std::string> makes() const override { return {"table", "timing"}; }
-  bool gathers(std::string_view) const override { return true; }
-  bool shows_labels() const override { return true; }
-  bool random() const override { return false; }
-  std::string published_in() const override { return "tables"; }
-
-  void check(const NodeContext& context) const override {
-    require_optimum(context.inputs("of"));
-    arrange(entries_of(context.inputs("of")), {rows, {}, "rows"});
-  }
-
+struct GapsNode : SearchReport {
   void run(NodeContext& context) const override {
     const std::vector<InputNode>& nodes = context.inputs("of");
-    const TableKeys keys{rows, {}, "rows"};
-    const std::vector<TableCell> cells = arrange(entries_of(nodes), keys);
+    const std::vector<TableCell> cells = arrange(entries_of(nodes), keys());
     Table table;
-    add_key_columns(table, keys, cells);
+    add_key_columns(table, keys(), cells);
     using Type = ColumnInfo::Type;
     const std::vector<ColumnInfo> columns = {
         {"n_replicates", Type::integer, "", "Searches."},
@@ -66,13 +51,7 @@ struct GapsNode : Node {
     write_table(context.folder() / kTableFile, table);
   }
 
-  static Parameters<GapsNode> parameters() {
-    using This = GapsNode;
-    return node_parameters<This>()
-        .references("of", &This::of, "search", "Searches of objectives whose optimum is known.")
-        .add("rows", &This::rows, "",
-             "What tells the rows apart: columns of sweeps, objective, node (the search's id).");
-  }
+  static Parameters<GapsNode> parameters() { return search_report_parameters<GapsNode>(); }
 };
 
 const Component<Node, GapsNode> kComponent(

@@ -12,28 +12,14 @@ namespace coppice {
 namespace {
 
 /// How long searches take to come near the optimum, and how many do; a row for each target.
-struct RuntimesNode : Node {
-  References of;
-  std::vector<std::string> rows;
+struct RuntimesNode : SearchReport {
   std::vector<double> targets = {1e1, 1e-1, 1e-3, 1e-5, 1e-8};
-
-  std::vector<std::string> makes() const override { return {"table", "timing"}; }
-  bool gathers(std::string_view) const override { return true; }
-  bool shows_labels() const override { return true; }
-  bool random() const override { return false; }
-  std::string published_in() const override { return "tables"; }
-
-  void check(const NodeContext& context) const override {
-    require_optimum(context.inputs("of"));
-    arrange(entries_of(context.inputs("of")), {rows, {}, "rows"});
-  }
 
   void run(NodeContext& context) const override {
     const std::vector<InputNode>& nodes = context.inputs("of");
-    const TableKeys keys{rows, {}, "rows"};
-    const std::vector<TableCell> cells = arrange(entries_of(nodes), keys);
+    const std::vector<TableCell> cells = arrange(entries_of(nodes), keys());
     Table named;
-    add_key_columns(named, keys, cells);
+    add_key_columns(named, keys(), cells);
     Table table;
     table.columns = named.columns;
     add_value_columns(table);
@@ -50,12 +36,8 @@ struct RuntimesNode : Node {
   }
 
   static Parameters<RuntimesNode> parameters() {
-    using This = RuntimesNode;
-    return node_parameters<This>()
-        .references("of", &This::of, "search", "Searches of objectives whose optimum is known.")
-        .add("rows", &This::rows, "",
-             "What tells the rows apart: columns of sweeps, objective, node (the search's id).")
-        .add("targets", &This::targets, "", "Gaps to the optimum, a row for each.", at_least(0));
+    return search_report_parameters<RuntimesNode>().add("targets", &RuntimesNode::targets, "",
+                                                        "Gaps to the optimum, a row for each.", at_least(0));
   }
 
  private:

@@ -6,6 +6,7 @@
 
 #include "engine/graph/node.h"
 #include "engine/statistics/running_times.h"
+#include "reports/cells.h"
 
 namespace coppice {
 
@@ -22,8 +23,31 @@ struct SearchLog {
 /// Throws ConfigError when the node has none.
 SearchLog read_search(const InputNode& node);
 
-/// Throws std::invalid_argument for a search whose optimum is not known.
-void require_optimum(const std::vector<InputNode>& searches);
+/// A table about searches of objectives whose optimum is known; columns of sweeps and the like tell its rows
+/// apart.
+struct SearchReport : Node {
+  References of;
+  std::vector<std::string> rows;
+
+  std::vector<std::string> makes() const override { return {"table", "timing"}; }
+  bool gathers(std::string_view) const override { return true; }
+  bool shows_labels() const override { return true; }
+  bool random() const override { return false; }
+  std::string published_in() const override { return "tables"; }
+  void check(const NodeContext& context) const override;
+
+ protected:
+  TableKeys keys() const { return {rows, {}, "rows"}; }
+};
+
+/// Parameters of T, a SearchReport.
+template <class T>
+Parameters<T> search_report_parameters() {
+  return node_parameters<T>()
+      .references("of", &T::of, "search", "Searches of objectives whose optimum is known.")
+      .add("rows", static_cast<std::vector<std::string> T::*>(&T::rows), "",
+           "What tells the rows apart: columns of sweeps, objective, node (the search's id).");
+}
 
 /// When the search first tried a point within the gap.
 SearchRun run_to(const SearchLog& search, double gap);

@@ -70,8 +70,8 @@ struct Run : ConfigInputs, SelectionInputs {
       throw line.error("--fail-fast", "'--keep-going' and '--fail-fast' exclude each other");
     watch_interrupts();
     // Never destroyed: at the end of the process that would take a tenth of an up-to-date run.
-    static auto* const kept = new std::vector<Plan>();
-    std::vector<Plan>& plans = *kept;
+    static auto* const kKept = new std::vector<Plan>();
+    std::vector<Plan>& plans = *kKept;
     plans = plan_all(line, *this);
     const Selection selected = selection(line);
     check_selection(plans, selected);
