@@ -107,13 +107,14 @@ Parameters<T>& Parameters<T>::slot(SlotInfo info, Sub<I> T::*member) {
   field.read = [info, member](T& object, const std::vector<const Element*>& given, Reader& reader) {
     Sub<I>& sub = object.*member;
     if (given.empty() && sub.resolved.name.empty()) return;
-    Element element = given.empty() ? sub.resolved : *given.front();
-    if (given.empty()) element.place = reader.element().place;
-    Element resolved;
+    Element fallback = given.empty() ? sub.resolved : Element();
+    fallback.place = reader.element().place;
+    const Element& element = given.empty() ? fallback : *given.front();
+    std::vector<Element> resolved(1);
     sub.object = std::static_pointer_cast<I>(
-        detail::make_component(I::kInterface, element, &resolved, reader.diagnostics()));
-    sub.resolved = resolved;
-    detail::fill_slot(info, reader.resolved(), {std::move(resolved)});
+        detail::make_component(I::kInterface, element, &resolved.front(), reader.diagnostics()));
+    sub.resolved = resolved.front();
+    detail::fill_slot(info, reader.resolved(), std::move(resolved));
   };
   field.print = [info, member](const T& object) {
     const Sub<I>& sub = object.*member;
@@ -156,6 +157,7 @@ T Parameters<T>::read(Reader& reader) const {
   T object{};
   reader.resolved().name = reader.element().name;
   reader.resolved().place = reader.element().place;
+  reader.resolved().attributes.reserve(fields_.size());
   for (std::size_t i = 0; i < fields_.size(); ++i) {
     const Attribute* given = reader.element().find(parameters_[i].name);
     if (given == nullptr && parameters_[i].required)

@@ -108,9 +108,8 @@ void append_xml(std::string& text, const Element& element, int indent) {
   text.append(static_cast<std::size_t>(indent), ' ');
   text += "<" + element.name;
   for (const Attribute& attribute : element.attributes) {
-    text += " " + attribute.name + "=\"";
-    text += escape_xml(attribute.value);
-    text += '"';
+    text.append(" ").append(attribute.name).append("=\"");
+    text.append(escape_xml(attribute.value)).append("\"");
   }
   if (element.children.empty()) {
     text += "/>\n";

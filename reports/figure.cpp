@@ -169,7 +169,7 @@ struct FigureNode : Node {
   /// That episodes were kept where these are the units.
   static void check_episodes(const std::vector<InputNode>& nodes) {
     for (const InputNode& node : nodes) {
-      if (node.replicate || !node.training.empty() || node.element.get("returns") != "false") continue;
+      if (node.replicate || !node.training.empty() || node.element->get("returns") != "false") continue;
       throw std::invalid_argument(fmt::format(
           "'{}' does not keep the episodes that this figure counts (returns=\"false\")", node.id));
     }

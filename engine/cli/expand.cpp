@@ -11,7 +11,7 @@ struct Expand : ConfigInputs {
   static Arguments<Expand> arguments() { return config_arguments<Expand>(); }
 
   int run(const CommandLine& line, Console& console) const {
-    for (const ExperimentConfig& experiment : expand_all(line, *this)) console.out(to_xml(flat(experiment)));
+    for (const ExperimentConfig& experiment : expand_all(line, *this)) console.out(flat(experiment));
     return kDone;
   }
 };

@@ -118,4 +118,9 @@ std::vector<Plan> plan_all(const CommandLine& line, const ConfigInputs& inputs) 
   return plans;
 }
 
+std::vector<Plan>& plan_to_keep(const CommandLine& line, const ConfigInputs& inputs) {
+  static auto* const kKept = new std::vector<Plan>();
+  return *kKept = plan_all(line, inputs);
+}
+
 }  // namespace coppice::cli

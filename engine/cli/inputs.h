@@ -34,6 +34,10 @@ std::vector<ExperimentConfig> expand_all(const CommandLine& line, const ConfigIn
 /// The same, planned.
 std::vector<Plan> plan_all(const CommandLine& line, const ConfigInputs& inputs);
 
+/// The same, once in a process, for a command that then ends: taking large plans apart would be a tenth of an
+/// up-to-date run.
+std::vector<Plan>& plan_to_keep(const CommandLine& line, const ConfigInputs& inputs);
+
 /// An existing path near to `path`, each of its parts corrected; empty when there is none.
 std::string nearest_path(const std::string& path);
 

@@ -141,7 +141,7 @@ struct PlanCommand : ConfigInputs, SelectionInputs {
     int threads = thread_count(line, jobs);
     if (threads == 0) threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     Json all = Json::array();
-    const std::vector<Plan> plans = plan_all(line, *this);
+    const std::vector<Plan>& plans = plan_to_keep(line, *this);
     const Selection selected = selection(line);
     check_selection(plans, selected);
     const std::vector<Statuses> of_plans = inspect(plans, selected, out);

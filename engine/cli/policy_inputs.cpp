@@ -41,12 +41,7 @@ NamedProblem find_problem(const CommandLine& line, const std::string& config, co
     if (node.kind != "problem") continue;
     known.push_back(node.name);
     if (node.name != id) continue;
-    InputNode problem;
-    problem.id = node.id;
-    problem.kind = node.kind;
-    problem.point = node.point;
-    problem.element = *node.resolved;
-    return {load_problem(problem), node.id};
+    return {node.node->problem(), node.id};
   }
   throw line.error(id, fmt::format("{} has no problem '{}'", config, id), suggestion(id, known));
 }

@@ -69,10 +69,7 @@ struct Run : ConfigInputs, SelectionInputs {
     if (keep_going && fail_fast)
       throw line.error("--fail-fast", "'--keep-going' and '--fail-fast' exclude each other");
     watch_interrupts();
-    // Never destroyed: at the end of the process that would take a tenth of an up-to-date run.
-    static auto* const kKept = new std::vector<Plan>();
-    std::vector<Plan>& plans = *kKept;
-    plans = plan_all(line, *this);
+    std::vector<Plan>& plans = plan_to_keep(line, *this);
     const Selection selected = selection(line);
     check_selection(plans, selected);
     const bool talks = progress == "auto" || progress == "plain";

@@ -40,6 +40,7 @@ struct NodeElement {
   Element element;
   std::vector<std::string> sweeps;  ///< ids in `over`
   Point point;                      ///< values of all columns of these sweeps, in the order of `sweeps`
+  std::shared_ptr<const Element> resolved = {};  ///< with every parameter, once the node was read
 };
 
 /// A file that expansion read, with its content's hash (XXH3-128, hexadecimal).
@@ -101,8 +102,9 @@ void check_overrides(const std::vector<ExperimentConfig>& experiments, const std
 /// Values are not worked out: they may make sense only where the part is used.
 void check_unused(const ExperimentConfig& experiment, Diagnostics& diagnostics);
 
-/// The flat file: expand() of its text gives the same experiment again.
-Element flat(const ExperimentConfig& experiment);
+/// The text of the flat file, with resolved elements where nodes have them: expand() of it gives the same
+/// experiment again.
+std::string flat(const ExperimentConfig& experiment);
 
 /// Names of attributes that belong to the language, not to a component: if, unless (on every element).
 bool is_control_attribute(std::string_view name);

@@ -36,7 +36,7 @@ void escape(Element& element) {
 }
 
 Element flat_node(const NodeElement& node) {
-  Element element = node.element;
+  Element element = node.resolved ? *node.resolved : node.element;
   escape(element);
   if (node.sweeps.empty()) return element;
   std::vector<std::string> point;
@@ -50,7 +50,7 @@ Element flat_node(const NodeElement& node) {
 
 }  // namespace
 
-Element flat(const ExperimentConfig& experiment) {
+std::string flat(const ExperimentConfig& experiment) {
   Element root;
   root.name = "experiment";
   add(root, "coppice", std::to_string(config::kLanguageVersion));
@@ -58,8 +58,15 @@ Element flat(const ExperimentConfig& experiment) {
   add(root, "seed", std::to_string(experiment.seed));
   if (!experiment.doc.empty()) add(root, "doc", experiment.doc);
   for (const SweepPoints& sweep : experiment.sweeps) root.children.push_back(flat_sweep(sweep));
-  for (const NodeElement& node : experiment.nodes) root.children.push_back(flat_node(node));
-  return root;
+  if (experiment.nodes.empty()) return to_xml(root);
+  // Node by node: all of them as one tree would take more memory than the text.
+  constexpr int kInside = 2;
+  constexpr std::string_view kEnd = "</experiment>\n", kEmptyEnd = "/>\n";
+  std::string text = to_xml(root);
+  text.resize(text.size() - (root.children.empty() ? kEmptyEnd : kEnd).size());
+  if (root.children.empty()) text += ">\n";
+  for (const NodeElement& node : experiment.nodes) text += to_xml(flat_node(node), kInside);
+  return text.append(kEnd);
 }
 
 }  // namespace coppice

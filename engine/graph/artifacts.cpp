@@ -40,14 +40,14 @@ void require_same(const Space& given, const Space& wanted, std::string_view what
 
 /// The component of a policy that is nothing but its element; null for learned ones and those from files.
 const Element* configured_policy(const InputNode& node) {
-  const bool configured = node.kind == "policy" && !node.element.children.empty();
-  return configured ? &node.element.children.front() : nullptr;
+  const bool configured = node.kind == "policy" && !node.element->children.empty();
+  return configured ? &node.element->children.front() : nullptr;
 }
 
 /// Where the policy file of a node is; empty where there is none yet.
 fs::path policy_file(const InputNode& node) {
   if (!node.folder.empty()) return node.folder / kPolicyFile;
-  return node.kind == "policy" ? fs::path(node.element.get("file")) : fs::path();
+  return node.kind == "policy" ? fs::path(node.element->get("file")) : fs::path();
 }
 
 }  // namespace
@@ -70,13 +70,13 @@ void require_same_axes(const Spaces& given, const Spaces& problem, std::string_v
 }
 
 std::shared_ptr<const Problem> load_problem(const InputNode& node) {
-  if (node.element.children.empty()) throw std::logic_error("node " + node.id + " has no problem");
-  return made_component<Problem>(node.element.children.front()).object;
+  if (!node.problem) throw std::logic_error("node " + node.id + " has no problem");
+  return node.problem;
 }
 
 Sub<Objective> load_objective(const InputNode& node) {
-  if (node.element.children.empty()) throw std::logic_error("node " + node.id + " has no objective");
-  return made_component<Objective>(node.element.children.front());
+  if (node.element->children.empty()) throw std::logic_error("node " + node.id + " has no objective");
+  return made_component<Objective>(node.element->children.front());
 }
 
 std::shared_ptr<const Spaces> load_spaces(const InputNode& node) {
@@ -113,8 +113,8 @@ void write_policy(const MadePolicy& policy, const Spaces& spaces, NodeContext& c
 std::string common_origin(const InputNode& a, const InputNode& b) {
   if (!a.streams.empty() && !b.streams.empty() && a.streams.front() == b.streams.front())
     return fmt::format("come from the same draws ({})", b.streams.front());
-  const std::string_view file = a.element.get("file");  // of datasets, which draw nothing
-  const bool same_file = a.streams.empty() && !file.empty() && file == b.element.get("file");
+  const std::string_view file = a.element->get("file");  // of datasets, which draw nothing
+  const bool same_file = a.streams.empty() && !file.empty() && file == b.element->get("file");
   return same_file ? "are the same file" : "";
 }
 

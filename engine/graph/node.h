@@ -18,6 +18,8 @@
 
 namespace coppice {
 
+class Problem;
+
 /// Parameters that every node kind has. Those that do not change a node's result do not enter its key.
 struct NodeOptions {
   std::string id;
@@ -41,7 +43,8 @@ struct InputNode {
   std::string kind;
   Point point;
   std::optional<int> replicate;
-  Element element;               ///< resolved
+  std::shared_ptr<const Element> element;  ///< resolved
+  std::shared_ptr<const Problem> problem;  ///< as Node::problem
   std::filesystem::path folder;  ///< its files and timing.csv; empty for definitions and while checking
   std::string key;
   std::vector<PointValue> labels;  ///< columns that name it in tables: sweep columns, "problem", "policy"
@@ -110,6 +113,8 @@ class Node : public NodeOptions {
   virtual std::vector<std::string> makes() const = 0;
   /// True when there is nothing to run: the element is all (problem, and policy without a problem).
   virtual bool definition() const { return false; }
+  /// The problem that it is the name of; null: it names none.
+  virtual std::shared_ptr<const Problem> problem() const { return nullptr; }
   /// False when draws() plays no part: seed, label and replicate then stay out of its key, and it has no
   /// stream.
   virtual bool random() const { return true; }

@@ -195,13 +195,15 @@ void compute_keys(Plan& plan, Diagnostics& diagnostics) {
   for (InputFile& file : files.all()) plan.files.push_back(std::move(file));
 }
 
-/// From here on the experiment's elements are the resolved ones.
+/// Gives the experiment's nodes their resolved elements.
 void resolve_elements(const Declarations& declarations, ExperimentConfig& experiment) {
-  std::map<const Element*, const Element*> resolved;
-  for (const auto& [made, written] : written_elements(declarations)) resolved[written] = made;
+  std::map<const Element*, std::shared_ptr<const Element>> resolved;
+  for (const DeclaredNode& node : declarations.nodes) {
+    for (const DeclaredElement& element : node.elements) resolved[element.written] = element.resolved;
+  }
   for (NodeElement& node : experiment.nodes) {
     const auto found = resolved.find(&node.element);
-    if (found != resolved.end()) node.element = *found->second;
+    if (found != resolved.end()) node.resolved = found->second;
   }
 }
 

@@ -64,7 +64,7 @@ struct PlannedNode {
 /// What a config asks for, before looking at any result. Everything that plan, why and run say comes from
 /// here.
 struct Plan {
-  ExperimentConfig experiment;     ///< its elements resolved
+  ExperimentConfig experiment;     ///< its nodes with resolved elements
   std::vector<PlannedNode> nodes;  ///< every node after its inputs, else in document order
   std::vector<InputFile> files;    ///< read by the config and named in parameters
 

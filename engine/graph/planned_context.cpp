@@ -15,7 +15,8 @@ InputNode input_node(const Plan& plan, const PlannedNode& node, const std::files
   input.kind = node.kind;
   input.point = node.point;
   input.replicate = node.replicate;
-  input.element = *node.resolved;
+  input.element = node.resolved;
+  input.problem = node.node->problem();
   if (!node.definition && !run_folder.empty()) {
     input.folder = run_folder / node.folder;
   }

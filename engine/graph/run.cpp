@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 using Workspaces = std::vector<std::unique_ptr<Workspace>>;
 
 std::string resolved_text(const Plan& plan) {
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + to_xml(flat(plan.experiment));
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + flat(plan.experiment);
 }
 
 bool has_text(const fs::path& file, const std::string& text) {

@@ -18,6 +18,7 @@ class FigureTest : public ::testing::Test {
   InputNode& give(const std::string& artifact, std::optional<int> replicate, const std::string& variant) {
     InputNode& node = context.given["of"].emplace_back();
     node.id = "n";
+    node.element = shared(element("evaluate", {{"id", "n"}}));
     node.makes = {artifact, "timing"};
     if (artifact == "evaluation") node.makes.push_back("score");
     node.replicate = replicate;
@@ -249,7 +250,7 @@ TEST_F(FigureTest, DrawsNumbersAsNumbersHoweverTheyAreWritten) {
 
 TEST_F(FigureTest, RefusesToTakeAMeanForAnEpisode) {
   InputNode& node = give("evaluation", {}, "HA");
-  node.element = element("evaluate", {{"returns", "false"}});
+  node.element = shared(element("evaluate", {{"returns", "false"}}));
   write_file(node.folder / kEvaluationFile, "episodes,mean_return,sd,skewness\n5,-1,1,0\n");
   for (const char* kind : {"histogram", "profile"}) {
     EXPECT_THAT(error_of([&] {

@@ -37,12 +37,12 @@ struct ExportNode : Node {
   void check(const NodeContext& context) const override {
     const InputNode& input = context.inputs("policy").front();
     if (input.kind != "policy") return;
-    const std::string file(input.element.get("file"));
+    const std::string file(input.element->get("file"));
     PolicyFile content;
     if (!file.empty()) {
       content = read_policy_file(file);
     } else {
-      content.component = input.element.children.front();
+      content.component = input.element->children.front();
     }
     if (input.spaces) content.spaces = *input.spaces;
     exported(content, input.id);

@@ -149,14 +149,14 @@ struct OptimizeNode : Node {
       return std::make_unique<ObjectiveTarget>(*family, context.draws());
     }
     const InputNode& node = context.inputs("policy").front();
-    if (node.kind != "policy" || node.element.children.empty()) {
+    if (node.kind != "policy" || node.element->children.empty()) {
       throw std::invalid_argument(fmt::format(
           "policy '{}' is not configured in a policy node, but learned or read from a file: it has no "
           "parameters to tune",
           node.id));
     }
     return std::make_unique<PolicyTarget>(
-        TunedPolicy(node.element.children.front(), free), load_problem(context.inputs("problem").front()),
+        TunedPolicy(node.element->children.front(), free), load_problem(context.inputs("problem").front()),
         PolicyTrial{episodes, horizon, discount, criterion}, context.draws().fork("evaluations"));
   }
 

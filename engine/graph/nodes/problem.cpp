@@ -5,17 +5,18 @@
 namespace coppice {
 namespace {
 
-/// A problem under a name; other nodes make it from the element.
+/// A problem under a name; shared by the nodes that use it.
 struct ProblemNode : Node {
-  Sub<Problem> problem;
+  Sub<Problem> named;
 
   std::vector<std::string> makes() const override { return {"problem"}; }
+  std::shared_ptr<const Problem> problem() const override { return named.object; }
   bool definition() const override { return true; }
   bool random() const override { return false; }
   void run(NodeContext&) const override {}
 
   static Parameters<ProblemNode> parameters() {
-    return node_parameters<ProblemNode>().direct(&ProblemNode::problem, "The problem.");
+    return node_parameters<ProblemNode>().direct(&ProblemNode::named, "The problem.");
   }
 };
 

@@ -24,6 +24,10 @@ inline Element element(std::string name, const std::vector<std::pair<std::string
   return made;
 }
 
+inline std::shared_ptr<const Element> shared(Element element) {
+  return std::make_shared<const Element>(std::move(element));
+}
+
 /// One thread, which says that it is time to stop once it was asked a number of times.
 class StoppableSerial : public Serial {
  public:
@@ -87,7 +91,9 @@ inline InputNode input(const Element& described, const std::filesystem::path& fo
   InputNode made;
   made.id = described.get("id");
   made.kind = described.name;
-  made.element = make_node(described).resolved;
+  const Sub<Node> node = make_node(described);
+  made.element = shared(node.resolved);
+  made.problem = node.object->problem();
   made.folder = folder;
   made.key = made.id + "'s key";
   return made;

@@ -23,6 +23,7 @@ class Data {
     InputNode made;
     made.id = id;
     made.kind = "dataset";
+    made.element = shared(element("dataset", {{"id", id}}));
     made.folder = context_.folder();
     made.key = id;
     return made;
@@ -97,6 +98,7 @@ TEST(Fit, NamesTheColumnThatIsNotThere) {
 TEST(Fit, ChecksColumnsThatAreKnownBeforeItRuns) {
   FakeContext context;
   InputNode train, test;
+  train.element = test.element = shared(element("collect", {}));
   train.id = "train";
   train.columns = {"x1", "x3", "z"};
   test.id = "test";
@@ -115,6 +117,7 @@ TEST(Fit, ChecksColumnsThatAreKnownBeforeItRuns) {
 TEST(Fit, RefusesATestSetFromTheDrawsOfTheSamples) {
   FakeContext context;
   InputNode train, test;
+  train.element = test.element = shared(element("collect", {}));
   train.id = "train";
   train.streams = {"collect 0"};
   test.id = "test";
@@ -139,15 +142,15 @@ TEST(Fit, RefusesATestSetFromTheDrawsOfTheSamples) {
 TEST(Fit, RefusesTheSameFileAsTest) {
   FakeContext context;
   InputNode one, two;
-  one.element = element("dataset", {{"id", "one"}, {"file", "/data/a.csv"}});
-  two.element = element("dataset", {{"id", "two"}, {"file", "/data/a.csv"}});
+  one.element = shared(element("dataset", {{"id", "one"}, {"file", "/data/a.csv"}}));
+  two.element = shared(element("dataset", {{"id", "two"}, {"file", "/data/a.csv"}}));
   context.given["samples"] = {one};
   context.given["test"] = {two};
   EXPECT_THAT(error_of([&] {
                 fit("constant", {{"test", "test"}})->check(context);
               }),
               HasSubstr("the same file"));
-  two.element.set("file", "/data/b.csv");
+  two.element = shared(element("dataset", {{"id", "two"}, {"file", "/data/b.csv"}}));
   context.given["test"] = {two};
   EXPECT_EQ(error_of([&] { fit("constant", {{"test", "test"}})->check(context); }), "");
 }

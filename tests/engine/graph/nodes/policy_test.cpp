@@ -101,7 +101,7 @@ TEST(RequireSameAxes, LetsLimitsDifferButNothingElse) {
 TEST(LoadPolicy, GivesNothingWhileALearnedPolicyIsNotThereYet) {
   InputNode learned;
   learned.kind = "train";
-  learned.element = element("train", {{"id", "t"}});
+  learned.element = shared(element("train", {{"id", "t"}}));
   EXPECT_FALSE(load_policy(learned, *load_problem(input(problem_element()))));
 }
 

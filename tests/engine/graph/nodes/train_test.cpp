@@ -174,7 +174,7 @@ TEST(Train, RefusesSamplesThatAreThereTwice) {
   const auto data = [](const std::string& id, const std::string& stream, const std::string& file = {}) {
     InputNode made = input(collect(id));
     if (!stream.empty()) made.streams = {stream, "evaluate 0"};
-    if (!file.empty()) made.element.set("file", file);
+    if (!file.empty()) made.element = shared(element("dataset", {{"id", id}, {"file", file}}));
     return made;
   };
   const auto error = [&](std::vector<InputNode> samples) {
