@@ -21,6 +21,10 @@ struct FittedQParameters {
   int max_leaves = 50;
 
   Maximization how() const { return {maximization, max_leaves}; }
+  /// As Solver::check, where Q is learned.
+  void check_q_value(const Spaces& spaces) const {
+    q_value->check_maximization(how(), spaces.actions.front().axes.size());
+  }
 
   template <class T>
   static Parameters<T> declare() {

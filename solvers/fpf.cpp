@@ -22,6 +22,9 @@ class Fpf : public Solver, public FittedQParameters {
   std::vector<std::string> measures(bool value_given) const override {
     return value_given ? std::vector<std::string>() : FittedQ::measure_names();
   }
+  void check(const Spaces& spaces, bool value_given) const override {
+    if (!value_given) check_q_value(spaces);
+  }
   std::unique_ptr<Training> start(const TrainingInputs& inputs) const override;
 
   static Parameters<Fpf> parameters() {

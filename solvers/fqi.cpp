@@ -7,6 +7,7 @@ class Fqi : public Solver, public FittedQParameters {
  public:
   Needs needs() const override { return {.samples = true, .simulator = false, .single_action = true}; }
   std::vector<std::string> measures(bool) const override { return FittedQ::measure_names(); }
+  void check(const Spaces& spaces, bool) const override { check_q_value(spaces); }
   std::unique_ptr<Training> start(const TrainingInputs& inputs) const override;
   static Parameters<Fqi> parameters() { return declare<Fqi>(); }
 };

@@ -21,7 +21,8 @@ namespace coppice {
 struct Maximization {
   enum class Method {
     merge,  ///< the thesis's: projection, merge with pruning to `leaves`, best leaf (Algorithm 14)
-    exact   ///< the true maximum of the function
+    exact,  ///< the true maximum of the function
+    ascent  ///< the best of several local maxima along its axes; of one axis exact
   };
   Method method = Method::merge;
   int leaves = 50;
@@ -85,6 +86,9 @@ class Approximator {
   /// Same set and draws give the same function for any width of `parallel`. The set has at least one row, and
   /// is finite; the caller checks.
   virtual MadeFunction fit(const TrainingSet& set, const Draws& draws, Parallel& parallel) const = 0;
+  /// Throws std::invalid_argument when the functions that it fits cannot be maximized so over that many of
+  /// their inputs, of which they have more; to be known before anything is fitted.
+  virtual void check_maximization(const Maximization&, std::size_t /*free_inputs*/) const {}
 };
 
 }  // namespace coppice

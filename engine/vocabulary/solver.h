@@ -71,6 +71,9 @@ class Solver {
   /// Names of all the measures that its progress has, with or without TrainingInputs::value, so that a figure
   /// of another one is refused before anything runs.
   virtual std::vector<std::string> measures(bool /*value_given*/) const { return {}; }
+  /// Throws std::invalid_argument when it cannot learn for a problem of these spaces, with or without
+  /// TrainingInputs::value. Called when planning, after what `needs` asks for was found.
+  virtual void check(const Spaces&, bool /*value_given*/) const {}
   /// Throws std::invalid_argument when the inputs cannot be used.
   virtual std::unique_ptr<Training> start(const TrainingInputs& inputs) const = 0;
 };

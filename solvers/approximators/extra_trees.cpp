@@ -6,6 +6,7 @@
 #include "engine/vocabulary/elementary.h"
 #include "solvers/approximators/forest_function.h"
 #include "solvers/approximators/grow.h"
+#include "solvers/approximators/maximize.h"
 
 namespace coppice {
 namespace {
@@ -60,6 +61,11 @@ struct TreeParameters {
     return count;
   }
   static constexpr std::size_t kDirectionsPerInput = 16;
+
+  ForestKind kind(Aggregation aggregation) const {
+    return {leaves == Leaves::pwl ? LeafModel::linear : LeafModel::constant, aggregation,
+            splits == Splits::oblique};
+  }
 
   void check() const {
     if (directions && splits == Splits::axis) {
@@ -119,6 +125,9 @@ class ExtraTrees : public Approximator, public TreeParameters {
   MadeFunction fit(const TrainingSet& set, const Draws& draws, Parallel& parallel) const override {
     return fit_forest(set, *this, static_cast<std::size_t>(trees), aggregation, draws, parallel);
   }
+  void check_maximization(const Maximization& how, std::size_t free_inputs) const override {
+    coppice::check_maximization(kind(aggregation), free_inputs, how);
+  }
   static Parameters<ExtraTrees> parameters() {
     return declare<ExtraTrees>()
         .add("trees", &ExtraTrees::trees, "", "Trees in the forest (the thesis's M, and m).",
@@ -136,6 +145,9 @@ class RegressionTree : public Approximator, public TreeParameters {
  public:
   MadeFunction fit(const TrainingSet& set, const Draws& draws, Parallel& parallel) const override {
     return fit_forest(set, *this, 1, Aggregation::mean, draws, parallel);
+  }
+  void check_maximization(const Maximization& how, std::size_t free_inputs) const override {
+    coppice::check_maximization(kind(Aggregation::mean), free_inputs, how);
   }
   static Parameters<RegressionTree> parameters() { return declare<RegressionTree>(); }
 };

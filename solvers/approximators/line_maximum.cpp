@@ -32,29 +32,28 @@ std::uint64_t range_of(float begin, float end) {
 
 }  // namespace
 
-Maximum LineMaximum::over(const Forest& forest, std::span<const double> prefix, const Axis& axis) {
-  find_parts(forest, prefix, axis);
-  add_pieces(forest, prefix);
-  sort_breaks(axis);
-  at_.assign(prefix.begin(), prefix.end());
-  at_.push_back(forest.leaf() == LeafModel::constant ? best_place<LeafModel::constant>(forest.trees(), axis)
-                                                     : best_place<LeafModel::linear>(forest.trees(), axis));
+double LineMaximum::over(const Forest& forest, std::span<double> x, std::size_t along, double low,
+                         double high) {
+  along_ = along;
+  low_ = low;
+  high_ = high;
+  find_parts(forest, x);
+  add_pieces(forest, x);
+  sort_breaks();
+  x[along] = forest.leaf() == LeafModel::constant ? best_place<LeafModel::constant>(forest.trees())
+                                                  : best_place<LeafModel::linear>(forest.trees());
   values_.resize(forest.outputs());
-  forest.predict(at_, values_);
-  Maximum best;
-  best.at.resize(1);
-  best.at[0] = at_.back();
-  best.value = values_[0];
-  return best;
+  forest.predict(x, values_);
+  return values_[0];
 }
 
-void LineMaximum::find_parts(const Forest& forest, std::span<const double> prefix, const Axis& axis) {
+void LineMaximum::find_parts(const Forest& forest, std::span<const double> x) {
   rounded_.clear();
-  for (const double x : prefix) rounded_.push_back(rounded_up(x));
-  rounded_.resize(prefix.size() + 2);  // what splits along the line, and leaves, look at in vain
+  for (const double value : x) rounded_.push_back(rounded_up(value));
+  rounded_.push_back(0);  // what leaves look at in vain, as splits along the line do
   // A split is in the line where low <= threshold < high.
-  const float begin = std::nextafter(rounded_up(axis.low), -std::numeric_limits<float>::infinity());
-  const float end = rounded_up(axis.high);
+  const float begin = std::nextafter(rounded_up(low_), -std::numeric_limits<float>::infinity());
+  const float end = rounded_up(high_);
   open_.clear();
   leaves_.clear();
   for (std::uint32_t i = 0; i < forest.trees(); ++i) {
@@ -66,7 +65,7 @@ void LineMaximum::find_parts(const Forest& forest, std::span<const double> prefi
 // All open parts by one split. Without a branch that depends on the tree, which would be guessed wrongly:
 // what does not count is overwritten.
 void LineMaximum::descend(const ForestNode* nodes) {
-  const std::size_t along = rounded_.size() - 2;
+  const std::size_t along = along_;
   const float* x = rounded_.data();
   next_.resize(2 * open_.size());
   const std::size_t found = leaves_.size();
@@ -97,7 +96,7 @@ void LineMaximum::descend(const ForestNode* nodes) {
 }
 
 // P(L(A, B), i) = L(A_j, B + A_i i) (thesis, 2.1.4).
-void LineMaximum::add_pieces(const Forest& forest, std::span<const double> prefix) {
+void LineMaximum::add_pieces(const Forest& forest, std::span<const double> x) {
   pieces_.clear();
   breaks_.clear();
   const ForestTree any = forest.tree(0, 0);
@@ -109,19 +108,19 @@ void LineMaximum::add_pieces(const Forest& forest, std::span<const double> prefi
     }
     const double* model = any.model(leaves_[i].node());
     double bias = model[0];
-    for (std::size_t j = 0; j < prefix.size(); ++j) bias += model[1 + j] * prefix[j];
-    const double* rest = model + 1 + prefix.size();
-    pieces_.push_back({bias, rest[0], rest[1], rest[2], leaves_[i].tree()});
+    for (std::size_t j = 0; j < x.size(); ++j) bias += j == along_ ? 0.0 : model[1 + j] * x[j];
+    const double* range = model + 1 + x.size();
+    pieces_.push_back({bias, model[1 + along_], range[0], range[1], leaves_[i].tree()});
   }
 }
 
 // Into as many buckets of equal width as there are, most of which get few.
-void LineMaximum::sort_breaks(const Axis& axis) {
+void LineMaximum::sort_breaks() {
   const std::size_t count = breaks_.size();
-  const double width = axis.high - axis.low;
+  const double width = high_ - low_;
   const double scale = width > 0 && std::isfinite(width) ? static_cast<double>(count) / width : 0;
   const auto bucket = [&](std::uint64_t at_break) {
-    const double number = std::max(0.0, (place_of(at_break) - axis.low) * scale);
+    const double number = std::max(0.0, (place_of(at_break) - low_) * scale);
     return static_cast<std::size_t>(std::min(number, static_cast<double>(count - 1)));
   };
   ends_.assign(count + 1, 0);
@@ -140,10 +139,10 @@ void LineMaximum::sort_breaks(const Axis& axis) {
 // Passes the pieces of the sum from low to high. Of equal ones the first is taken; of a level one, its
 // middle.
 template <LeafModel kLeaf>
-double LineMaximum::best_place(std::size_t trees, const Axis& axis) {
+double LineMaximum::best_place(std::size_t trees) {
   current_.assign(trees, {});
   Piece sum;
-  double most = -kInfinity, best = axis.low;
+  double most = -kInfinity, best = low_;
   for (std::size_t i = 0; i < breaks_.size();) {
     const float begin = place_of(breaks_[i]);
     for (; i < breaks_.size() && place_of(breaks_[i]) == begin; ++i) {
@@ -157,15 +156,15 @@ double LineMaximum::best_place(std::size_t trees, const Axis& axis) {
       }
       ends = begins;
     }
-    const double end = i < breaks_.size() ? place_of(breaks_[i]) : axis.high;
-    const double least = std::max(axis.low, static_cast<double>(begin));
+    const double end = i < breaks_.size() ? place_of(breaks_[i]) : high_;
+    const double least = std::max(low_, static_cast<double>(begin));
     double value = sum.bias;
     if constexpr (kLeaf == LeafModel::linear) {
       value = std::max(sum.low, std::min(sum.high, sum.bias + sum.slope * (sum.slope > 0 ? end : least)));
     }
     if (!(value > most)) continue;
     most = value;
-    const double first = std::max(axis.low, std::nextafter(static_cast<double>(begin), kInfinity));
+    const double first = std::max(low_, std::nextafter(static_cast<double>(begin), kInfinity));
     best = sum.slope > 0 ? end : sum.slope < 0 ? first : std::max(first, least + 0.5 * (end - least));
   }
   return best;

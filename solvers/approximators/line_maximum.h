@@ -11,14 +11,14 @@
 
 namespace coppice {
 
-/// The exact maximum of a forest's mean (of output 0) along one axis, the last input. Along a line each tree
+/// The exact maximum of a forest's mean (of output 0) along the axis of one input. Along a line each tree
 /// is a row of pieces, constant or linear, and so is their mean, with a break wherever a tree has one: it is
 /// largest at an end of one of its pieces. All descents go down abreast, splitting up where the line is
 /// split; then the pieces of all trees are passed in the order in which they begin.
 class LineMaximum {
  public:
-  /// The first inputs are fixed to `prefix`; the last one is in [axis.low, axis.high].
-  Maximum over(const Forest& forest, std::span<const double> prefix, const Axis& axis);
+  /// The largest value over x[along] in [low, high], which is put into x; the other inputs stay as they are.
+  double over(const Forest& forest, std::span<double> x, std::size_t along, double low, double high);
 
  private:
   /// A part of the line, begin < u <= end, and the node of a tree that a descent has reached on it. In two
@@ -37,20 +37,22 @@ class LineMaximum {
     std::uint32_t tree = 0;
   };
 
-  void find_parts(const Forest& forest, std::span<const double> prefix, const Axis& axis);
+  void find_parts(const Forest& forest, std::span<const double> x);
   void descend(const ForestNode* nodes);
-  void add_pieces(const Forest& forest, std::span<const double> prefix);
-  void sort_breaks(const Axis& axis);
+  void add_pieces(const Forest& forest, std::span<const double> x);
+  void sort_breaks();
   template <LeafModel kLeaf>
-  double best_place(std::size_t trees, const Axis& axis);
+  double best_place(std::size_t trees);
 
-  std::vector<float> rounded_;                // the prefix
+  std::size_t along_ = 0;
+  double low_ = 0, high_ = 0;
+  std::vector<float> rounded_;                // the inputs
   std::vector<Part> open_, next_, leaves_;    // splits of a depth, of the next one; of any depth
   std::vector<Piece> pieces_;                 // of the leaves
   std::vector<std::uint64_t> breaks_, kept_;  // where a piece begins, and which
   std::vector<std::uint32_t> ends_;           // of the buckets that they are sorted by
   std::vector<Piece> current_;                // of each tree
-  std::vector<double> at_, values_;
+  std::vector<double> values_;
 };
 
 }  // namespace coppice

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "solvers/approximators/line_maximum.h"
+#include "solvers/approximators/ascent.h"
 #include "solvers/approximators/tree_operations.h"
 #include "solvers/approximators/tree_region.h"
 
@@ -223,21 +223,41 @@ class ExactMaximum {
   bool found_ = false;
 };
 
-// A tree is merged of others as their weighted mean, and where linear models are trimmed is no box.
-void check_trimmed(const Forest& forest, const Maximization& how) {
-  if (how.method == Maximization::Method::merge) {
+// A tree is merged of others as their weighted mean; along a line each tree has pieces, and a trimmed mean of
+// linear models has more.
+void check_trimmed(LeafModel leaf, bool is_exact) {
+  if (!is_exact) {
     throw std::invalid_argument(
-        "trees cannot be merged to their trimmed mean; choose the exact maximum, or the mean as aggregation");
+        "trees cannot be merged to their trimmed mean, nor is it maximized by ascent; choose the exact "
+        "maximum, or the mean as aggregation");
   }
-  if (forest.leaf() == LeafModel::linear) {
+  if (leaf == LeafModel::linear) {
     throw std::invalid_argument(
         "the maximum of the trimmed mean of linear leaves is not known; choose constant leaves, or the mean "
-        "as "
-        "aggregation");
+        "as aggregation");
   }
 }
 
+// Along a single axis ascent is exact.
+bool finds_exact(const Maximization& how, std::size_t free_inputs) {
+  return how.method == Maximization::Method::exact ||
+         (how.method == Maximization::Method::ascent && free_inputs == 1);
+}
+
 }  // namespace
+
+void check_maximization(const ForestKind& forest, std::size_t free_inputs, const Maximization& how) {
+  if (forest.aggregation == Aggregation::trimmed_mean) {
+    check_trimmed(forest.leaf, finds_exact(how, free_inputs));
+  }
+  if (forest.is_oblique && free_inputs > 1) {
+    throw std::invalid_argument(fmt::format(
+        "forests with oblique splits cannot be maximized over {} inputs: their leaves are no boxes; valid "
+        "are "
+        "axis-aligned splits (splits=\"axis\"), or a single input that is left free (one action axis)",
+        free_inputs));
+  }
+}
 
 Maximum maximize(const Forest& forest, std::span<const double> prefix, const Space& box,
                  const Maximization& how) {
@@ -246,12 +266,12 @@ Maximum maximize(const Forest& forest, std::span<const double> prefix, const Spa
         fmt::format("a function of {} inputs has no maximum over {} of them with {} given", forest.inputs(),
                     box.size(), prefix.size()));
   }
-  if (forest.aggregation() == Aggregation::trimmed_mean) check_trimmed(forest, how);
-  const bool is_exact = how.method == Maximization::Method::exact;
+  check_maximization({forest.leaf(), forest.aggregation(), !forest.directions().empty()}, box.size(), how);
+  const bool is_exact = finds_exact(how, box.size());
   const bool is_plain = forest.aggregation() == Aggregation::mean && forest.directions().empty();
-  if (is_exact && box.size() == 1 && is_plain) {
-    thread_local LineMaximum line;
-    return line.over(forest, prefix, box[0]);
+  if (is_plain && (how.method == Maximization::Method::ascent || (is_exact && box.size() == 1))) {
+    thread_local Ascent ascent;
+    return ascent.over(forest, prefix, box);
   }
   thread_local Box bounds;
   thread_local std::vector<Tree> projected;
@@ -265,7 +285,6 @@ Maximum maximize(const Forest& forest, std::span<const double> prefix, const Spa
   const std::span<Tree> trees(projected.data(), forest.trees());
   for (std::size_t i = 0; i < trees.size(); ++i) project(forest.tree(0, i), prefix, bounds, trees[i]);
   if (is_exact) {
-    for (const Tree& tree : trees) check_boxes(tree);
     thread_local ExactMaximum exact;
     return exact.over(trees, forest.aggregation(), bounds);
   }

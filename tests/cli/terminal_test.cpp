@@ -1,6 +1,8 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <pty.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -75,6 +77,11 @@ class Terminal : public testing::Test {
             replicates="3"/>
 </experiment>
 )");
+  }
+  void SetUp() override {
+    const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
+    if (terminal < 0) GTEST_SKIP() << "this machine gives no terminals; is /dev/pts mounted?";
+    ::close(terminal);
   }
   TemporaryFolder folder_;
 };

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/golden.h"
+#include "tests/support/make.h"
 #include "tests/support/random_samples.h"
 
 namespace coppice {
@@ -34,10 +35,13 @@ void add_predictions(const Function& function, NamedValues& values) {
   }
 }
 
-void add_maxima(const Function& function, NamedValues& values) {
+using Method = std::pair<const char*, Maximization::Method>;
+const Method kMerge{"merge", Maximization::Method::merge}, kExact{"exact", Maximization::Method::exact},
+    kAscent{"ascent", Maximization::Method::ascent};
+
+void add_maxima(const Function& function, const std::vector<Method>& methods, NamedValues& values) {
   const Space box = {{"a", "", -1, 1}, {"b", "", -1, 1}};
-  for (const auto& [name, method] :
-       {std::pair{"merge", Maximization::Method::merge}, std::pair{"exact", Maximization::Method::exact}}) {
+  for (const auto& [name, method] : methods) {
     for (const double prefix : {-0.7, 0.1, 0.9}) {
       const Maximum best = function.maximize({&prefix, 1}, box, {method, 20});
       const std::string what = fmt::format("{} maximum at {}: ", name, prefix);
@@ -101,6 +105,24 @@ TEST_P(ApproximatorGoldens, PredictionsAreTheRecordedOnes) {
 INSTANTIATE_TEST_SUITE_P(All, ApproximatorGoldens,
                          testing::ValuesIn(Catalogue::instance().names("approximator")), component_name);
 
+TEST(ForestGoldens, ObliqueForestsAreTheRecordedOnes) {
+  const Sub<Approximator> approximator =
+      make_from_xml<Approximator>("<extra_trees splits=\"oblique\" trees=\"3\" leaves=\"pwl\"/>");
+  NamedValues values;
+  const MadeFunction function = fitted(*approximator);
+  for (const auto& [fact, value] : function->facts()) values.add(fact, value);
+  add_predictions(*function, values);
+  expect_golden("approximator", "extra_trees.oblique", values.table(), versions_of(approximator));
+}
+
+TEST(ForestGoldens, MaximaByAscentAreTheRecordedOnes) {
+  const Sub<Approximator> approximator = make_for_golden<Approximator>("extra_trees");
+  NamedValues values;
+  const MadeFunction function = fitted(*approximator);
+  add_maxima(*function, {kAscent}, values);
+  expect_golden("function", "forest.ascent", values.table(), versions_of(approximator));
+}
+
 class FunctionGoldens : public testing::TestWithParam<std::string> {};
 
 // As the first approximator makes it that does.
@@ -111,7 +133,7 @@ TEST_P(FunctionGoldens, PredictionsAndMaximaAreTheRecordedOnes) {
     if (function.resolved.name != GetParam()) continue;
     NamedValues values;
     add_predictions(*function, values);
-    add_maxima(*function, values);
+    add_maxima(*function, {kMerge, kExact}, values);
     expect_golden("function", GetParam(), values.table(),
                   versions_of(function) + "; " + name + " " + versions_of(approximator));
     return;

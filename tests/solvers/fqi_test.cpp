@@ -41,6 +41,32 @@ TEST(Fqi, TakesAnyApproximator) {
   EXPECT_NEAR(value_at(*result.value, 1, 0), (10 + 8 * (-1 + 0.9 * 2 / 9)) / 9, 1e-12);
 }
 
+/// What it says, before anything is learned, of a problem with so many action axes.
+std::string refusal(const std::string& attributes, const std::string& forest, std::size_t axes) {
+  const auto solver =
+      make_from_xml<Solver>("<fqi " + attributes + "><q_value>" + forest + "</q_value></fqi>");
+  Spaces spaces;
+  spaces.actions = {{"push", Space(axes, {"force", "N", -1, 1})}};
+  try {
+    solver->check(spaces, false);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Fqi, RefusesMaximaThatItsForestsDoNotHaveBeforeItLearns) {
+  const std::string oblique = "<extra_trees splits=\"oblique\"/>";
+  const std::string trimmed = "<extra_trees aggregation=\"trimmed_mean\"/>";
+  EXPECT_EQ(refusal("", oblique, 1), "");
+  EXPECT_NE(refusal("", oblique, 2).find("axis-aligned"), std::string::npos);
+  EXPECT_NE(refusal("", "<regression_tree splits=\"oblique\"/>", 2).find("axis-aligned"), std::string::npos);
+  EXPECT_NE(refusal("maximization=\"merge\"", trimmed, 1).find("the exact maximum"), std::string::npos);
+  EXPECT_EQ(refusal("maximization=\"exact\"", trimmed, 2), "");
+  EXPECT_EQ(refusal("maximization=\"ascent\"", trimmed, 1), "");
+  EXPECT_NE(refusal("maximization=\"ascent\"", trimmed, 2), "");
+}
+
 TEST(Fqi, SaysWhatItNeeds) {
   const Solver::Needs needs = make_from_xml<Solver>("<fqi/>")->needs();
   EXPECT_TRUE(needs.samples && needs.single_action);

@@ -10,12 +10,14 @@
 #include <stdexcept>
 #include <utility>
 
+#include "solvers/approximators/line_maximum.h"
 #include "tests/solvers/approximators/random_trees.h"
 
 namespace coppice::testing {
 namespace {
 
 constexpr Maximization kExact{Maximization::Method::exact, 1};
+constexpr Maximization kAscent{Maximization::Method::ascent, 1};
 
 struct Case {
   std::vector<Tree> trees;
@@ -160,8 +162,12 @@ TEST(Maximize, RefusesTrimmedMeansThatItCannotExpress) {
     forest.aggregate_by(Aggregation::trimmed_mean);
     EXPECT_THROW(maximize(forest, test.prefix, test.axes, {Maximization::Method::merge, 50}),
                  std::invalid_argument);
+    if (test.axes.size() > 1) {
+      EXPECT_THROW(maximize(forest, test.prefix, test.axes, kAscent), std::invalid_argument);
+    }
     if (forest.leaf() == LeafModel::constant) continue;
     EXPECT_THROW(maximize(forest, test.prefix, test.axes, kExact), std::invalid_argument);
+    EXPECT_THROW(maximize(forest, test.prefix, test.axes, kAscent), std::invalid_argument);
   }
 }
 
@@ -179,6 +185,35 @@ TEST(Maximize, MergeIsNeverBetterThanExactAndEqualToItWithoutPruning) {
     worse += predicted(forest, test, pruned) < exact.value - 1e-6 ? 1 : 0;
   }
   EXPECT_GT(worse, 500) << "three leaves lose something";
+}
+
+TEST(Maximize, AscentEndsWhereNoAxisGivesMoreMostlyAtTheMaximum) {
+  int largest = 0, several = 0;
+  LineMaximum line;
+  for (std::uint64_t trial = 0; trial < 6000; ++trial) {
+    const Case test = random_case(trial);
+    const Forest forest = forest_of(test.trees);
+    const Maximum exact = maximize(forest, test.prefix, test.axes, kExact);
+    const Maximum found = maximize(forest, test.prefix, test.axes, kAscent);
+    ASSERT_EQ(found.value, predicted(forest, test, found)) << "trial " << trial;
+    if (test.axes.size() == 1) {
+      ASSERT_EQ(found.value, exact.value) << "trial " << trial;
+      ASSERT_EQ(found.at[0], exact.at[0]) << "trial " << trial;
+      continue;
+    }
+    std::vector<double> x = test.prefix;
+    x.insert(x.end(), found.at.begin(), found.at.end());
+    for (std::size_t i = 0; i < test.axes.size(); ++i) {
+      ASSERT_TRUE(found.at[i] >= test.axes[i].low && found.at[i] <= test.axes[i].high) << "trial " << trial;
+      std::vector<double> moved = x;
+      const std::size_t along = test.prefix.size() + i;
+      const double most = line.over(forest, moved, along, test.axes[i].low, test.axes[i].high);
+      ASSERT_LE(most, found.value + 1e-12) << "trial " << trial;
+    }
+    ++several;
+    largest += found.value > exact.value - 1e-12 ? 1 : 0;
+  }
+  EXPECT_GT(largest, several * 9 / 10);
 }
 
 TEST(Maximize, RefusesABoxThatDoesNotFit) {

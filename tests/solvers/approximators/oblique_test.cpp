@@ -226,7 +226,8 @@ TEST(ObliqueTree, OfSeveralInputsIsNeitherPrunedNorMaximized) {
   EXPECT_THROW(prune(tree, box, 2), std::invalid_argument);
   const Forest forest = forest_of({tree});
   const Space axes(2, {"a", "", -1, 1});
-  for (const auto method : {Maximization::Method::exact, Maximization::Method::merge}) {
+  using enum Maximization::Method;
+  for (const auto method : {exact, merge, ascent}) {
     try {
       maximize(forest, {}, axes, {method, 50});
       FAIL();
