@@ -11,7 +11,7 @@ namespace {
 
 // Chosen by what the best of them misses and costs (docs/architecture.md).
 constexpr std::size_t kProbesPerAxis = 16;
-constexpr std::size_t kStarts = 4;
+constexpr std::size_t kStarts = 3;
 constexpr int kMostRounds = 20;
 
 }  // namespace
