@@ -61,13 +61,18 @@ const Attribute* attribute_naming(const Element& element, const std::string& pat
 }
 
 /// A mistake in a file that the element names stands where it names it; one at a place in the file stays
-/// there.
-void report(Diagnostic mistake, const PlannedNode& node, const Element& written, Diagnostics& diagnostics) {
+/// there. One in a whole file that an input names was found there: those are collected in `bad_files`.
+void report(Diagnostic mistake, const PlannedNode& node, const Element& written,
+            std::set<std::string>& bad_files, Diagnostics& diagnostics) {
   const Attribute* naming =
       mistake.place.file ? attribute_naming(written, mistake.place.file->path) : nullptr;
   if (!mistake.place.file) {
     mistake.place = node.place;
+  } else if (naming == nullptr && mistake.place.line == 0 && bad_files.contains(mistake.place.file->path)) {
+    diagnostics.already_reported();
+    return;
   } else if (naming != nullptr && mistake.place.line == 0) {
+    bad_files.insert(mistake.place.file->path);
     mistake.message = fmt::format("{}: {}", naming->value, mistake.message);
     mistake.place = naming->value_place;
   } else if (naming != nullptr) {
@@ -82,6 +87,7 @@ void report(Diagnostic mistake, const PlannedNode& node, const Element& written,
 /// Lets every node check itself with the elements of its inputs; replicates differ in nothing that it could
 /// check.
 void check_nodes(Plan& plan, const WrittenElements& written, Diagnostics& diagnostics) {
+  std::set<std::string> bad_files;
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
     PlannedNode& node = plan.nodes[i];
     if (node.replicate.value_or(0) != 0) continue;
@@ -93,7 +99,7 @@ void check_nodes(Plan& plan, const WrittenElements& written, Diagnostics& diagno
       node.spaces = node.node->spaces(context);
     } catch (const ConfigError& error) {
       for (const Diagnostic& mistake : error.diagnostics())
-        report(mistake, node, *written.at(node.resolved.get()), diagnostics);
+        report(mistake, node, *written.at(node.resolved.get()), bad_files, diagnostics);
     } catch (const std::invalid_argument& broken) {
       diagnostics.error(node.place, fmt::format("<{}>: {}", node.kind, broken.what()));
     } catch (const std::runtime_error& broken) {

@@ -351,7 +351,9 @@ TEST_F(BadInput, PolicyFilesOfEveryKindOfDamage) {
       EXPECT_EQ(ended.status, 2) << command;
       EXPECT_EQ(ended.out, "");
       EXPECT_TRUE(contains(ended.err, "x.policy")) << ended.err;
-      EXPECT_TRUE(contains(ended.err, wrong.message)) << command << "\n" << ended.err;
+      const std::size_t said = ended.err.find(wrong.message);
+      EXPECT_NE(said, std::string::npos) << command << "\n" << ended.err;
+      EXPECT_EQ(ended.err.find(wrong.message, said + 1), std::string::npos) << "twice\n" << ended.err;
     }
   }
 }
