@@ -36,8 +36,7 @@ struct FittedQParameters {
                    "Discount of a step; auto: the problem's.", between(0, 1))
         .automatic("target_min", static_cast<std::optional<double> T::*>(&T::target_min), "",
                    "Targets below are raised to it, so that a rare large penalty does not spread over its "
-                   "neighbours; "
-                   "auto: no limit, as in the thesis.")
+                   "neighbours; auto: no limit, as in the thesis.")
         .add("model_samples", static_cast<int T::*>(&T::model_samples), "",
              "Iterate on this many transitions of a model of the problem that is fitted to the samples, from "
              "states and actions drawn uniformly; 0: on the samples themselves, as in the thesis. For few "

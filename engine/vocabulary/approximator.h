@@ -22,7 +22,7 @@ struct Maximization {
   enum class Method {
     merge,  ///< the thesis's: projection, merge with pruning to `leaves`, best leaf (Algorithm 14)
     exact,  ///< the true maximum of the function
-    ascent  ///< the best of several local maxima along its axes; of one axis exact
+    ascent  ///< of forests the best of several local maxima, over one axis exact
   };
   Method method = Method::merge;
   int leaves = 50;

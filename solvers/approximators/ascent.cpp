@@ -47,7 +47,9 @@ void Ascent::spread(std::size_t n) {
 void Ascent::place(std::size_t number, const Space& box) {
   for (std::size_t i = 0; i < box.size(); ++i) {
     const double part = 0.5 + static_cast<double>(number) * steps_[i];
-    x_[first_ + i] = box[i].low + (part - std::floor(part)) * (box[i].high - box[i].low);
+    const double width = box[i].high - box[i].low;
+    x_[first_ + i] = std::isfinite(width) ? box[i].low + (part - std::floor(part)) * width
+                                          : std::clamp(0.0, box[i].low, box[i].high);
   }
 }
 

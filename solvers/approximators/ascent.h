@@ -14,7 +14,8 @@ namespace coppice {
 /// that are spread evenly over the box, so equal calls give equal results. Along a single axis it is exact.
 class Ascent {
  public:
-  /// The first inputs are fixed to `prefix`.
+  /// The first inputs are fixed to `prefix`; `box` is of the others, one at least. Along axes without an end
+  /// all begin near 0.
   Maximum over(const Forest& forest, std::span<const double> prefix, const Space& box);
 
  private:

@@ -136,7 +136,7 @@ class ExtraTrees : public Approximator, public TreeParameters {
             "aggregation", &ExtraTrees::aggregation, {"mean", "trimmed_mean"},
             "What the forest makes of its trees' predictions: their mean, or the mean without the lowest "
             "and the highest tenth (rounded up: 3 of 25 on each side). A trimmed mean cannot be merged into "
-            "a tree; its exact maximum needs constant leaves.");
+            "a tree; its maximum must be exact and needs constant leaves.");
   }
 };
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "solvers/approximators/forest_descent.h"
+#include "solvers/approximators/tree_region.h"
 
 namespace coppice {
 namespace {
@@ -165,7 +166,7 @@ double LineMaximum::best_place(std::size_t trees) {
     if (!(value > most)) continue;
     most = value;
     const double first = std::max(low_, std::nextafter(static_cast<double>(begin), kInfinity));
-    best = sum.slope > 0 ? end : sum.slope < 0 ? first : std::max(first, least + 0.5 * (end - least));
+    best = sum.slope > 0 ? end : sum.slope < 0 ? first : std::max(first, centre(least, end));
   }
   return best;
 }

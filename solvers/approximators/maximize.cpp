@@ -225,30 +225,31 @@ class ExactMaximum {
 
 // A tree is merged of others as their weighted mean; along a line each tree has pieces, and a trimmed mean of
 // linear models has more.
-void check_trimmed(LeafModel leaf, bool is_exact) {
-  if (!is_exact) {
-    throw std::invalid_argument(
-        "trees cannot be merged to their trimmed mean, nor is it maximized by ascent; choose the exact "
-        "maximum, or the mean as aggregation");
-  }
+void check_trimmed(LeafModel leaf, Maximization::Method method, bool is_exact) {
   if (leaf == LeafModel::linear) {
     throw std::invalid_argument(
-        "the maximum of the trimmed mean of linear leaves is not known; choose constant leaves, or the mean "
-        "as aggregation");
+        "the maximum of a trimmed mean of linear leaves is not known; choose leaves=\"pwc\" or "
+        "aggregation=\"mean\"");
   }
+  if (is_exact) return;
+  throw std::invalid_argument(
+      fmt::format("{}; choose maximization=\"exact\" or aggregation=\"mean\"",
+                  method == Maximization::Method::merge
+                      ? "trees cannot be merged to their trimmed mean"
+                      : "a trimmed mean of trees is not maximized by ascent over several action axes"));
 }
 
-// Along a single axis ascent is exact.
+// Along a single axis ascent is exact; without any there is one value.
 bool finds_exact(const Maximization& how, std::size_t free_inputs) {
   return how.method == Maximization::Method::exact ||
-         (how.method == Maximization::Method::ascent && free_inputs == 1);
+         (how.method == Maximization::Method::ascent && free_inputs <= 1);
 }
 
 }  // namespace
 
 void check_maximization(const ForestKind& forest, std::size_t free_inputs, const Maximization& how) {
   if (forest.aggregation == Aggregation::trimmed_mean) {
-    check_trimmed(forest.leaf, finds_exact(how, free_inputs));
+    check_trimmed(forest.leaf, how.method, finds_exact(how, free_inputs));
   }
   if (forest.is_oblique && free_inputs > 1) {
     throw std::invalid_argument(fmt::format(
@@ -269,7 +270,7 @@ Maximum maximize(const Forest& forest, std::span<const double> prefix, const Spa
   check_maximization({forest.leaf(), forest.aggregation(), !forest.directions().empty()}, box.size(), how);
   const bool is_exact = finds_exact(how, box.size());
   const bool is_plain = forest.aggregation() == Aggregation::mean && forest.directions().empty();
-  if (is_plain && (how.method == Maximization::Method::ascent || (is_exact && box.size() == 1))) {
+  if (is_plain && (is_exact ? box.size() == 1 : how.method == Maximization::Method::ascent)) {
     thread_local Ascent ascent;
     return ascent.over(forest, prefix, box);
   }

@@ -32,6 +32,11 @@ class MergedTree : public Approximator {
     return made<Function>(ForestFunction(merged(made_of->forest(), range(set.x))), ForestFunction::kName);
   }
 
+  /// What cannot be maximized over several inputs by merging cannot be merged.
+  void check_maximization(const Maximization&, std::size_t free_inputs) const override {
+    forest->check_maximization({Maximization::Method::merge, max_leaves}, free_inputs + 1);
+  }
+
   static Parameters<MergedTree> parameters() {
     using This = MergedTree;
     return Parameters<This>()

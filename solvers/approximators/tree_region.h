@@ -86,6 +86,11 @@ inline double low_share(double low, double high, const Box& box, std::size_t axi
   return width > 0 ? std::clamp((threshold - begin) / width, 0.0, 1.0) : 0.5;
 }
 
+/// Between two ends; near 0 where they are infinitely far from each other.
+inline double centre(double low, double high) {
+  return std::isfinite(high - low) ? low + 0.5 * (high - low) : std::clamp(0.0, low, high);
+}
+
 /// Where in the region a linear model is largest along an axis: at one end, which belongs to the region, or
 /// anywhere, then at the centre.
 inline double best_place(const Region& region, const Box& box, std::size_t axis, double slope) {
@@ -93,7 +98,7 @@ inline double best_place(const Region& region, const Box& box, std::size_t axis,
   const double least = region.least(axis, box);
   if (slope < 0) return least;
   const double low = std::max(region.low(axis), box.low[axis]);
-  return std::max(least, low + 0.5 * (region.high(axis) - low));
+  return std::max(least, centre(low, region.high(axis)));
 }
 
 }  // namespace coppice

@@ -35,8 +35,8 @@ Parameters<T>& declare_maximization(Parameters<T>& parameters) {
           "maximization", static_cast<Maximization::Method T::*>(&T::maximization),
           {"merge", "exact", "ascent"},
           "How the best action is found: in the forest merged into one pruned tree (Algorithm 14), exactly, "
-          "or by ascent along one action after the other from several places: with several actions much "
-          "faster than the others and nearly exact, with a single one exact.")
+          "or by ascent along one axis of the action after the other from several places: with several axes "
+          "nearly exact and much faster than the others, with a single one exact.")
       .add("max_leaves", static_cast<int T::*>(&T::max_leaves), "",
            "Leaves of the merged tree at most (the thesis's n_max).", between(1, 100000));
 }

@@ -61,10 +61,15 @@ TEST(Fqi, RefusesMaximaThatItsForestsDoNotHaveBeforeItLearns) {
   EXPECT_EQ(refusal("", oblique, 1), "");
   EXPECT_NE(refusal("", oblique, 2).find("axis-aligned"), std::string::npos);
   EXPECT_NE(refusal("", "<regression_tree splits=\"oblique\"/>", 2).find("axis-aligned"), std::string::npos);
-  EXPECT_NE(refusal("maximization=\"merge\"", trimmed, 1).find("the exact maximum"), std::string::npos);
+  EXPECT_NE(refusal("maximization=\"merge\"", trimmed, 1).find("choose maximization=\"exact\""),
+            std::string::npos);
   EXPECT_EQ(refusal("maximization=\"exact\"", trimmed, 2), "");
   EXPECT_EQ(refusal("maximization=\"ascent\"", trimmed, 1), "");
-  EXPECT_NE(refusal("maximization=\"ascent\"", trimmed, 2), "");
+  EXPECT_NE(refusal("maximization=\"ascent\"", trimmed, 2).find("by ascent"), std::string::npos);
+  EXPECT_NE(refusal("", "<merged_tree>" + oblique + "</merged_tree>", 1).find("axis-aligned"),
+            std::string::npos);
+  EXPECT_NE(refusal("maximization=\"exact\"", "<merged_tree>" + trimmed + "</merged_tree>", 1), "");
+  EXPECT_EQ(refusal("", "<merged_tree><extra_trees/></merged_tree>", 3), "");
 }
 
 TEST(Fqi, SaysWhatItNeeds) {

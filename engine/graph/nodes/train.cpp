@@ -90,10 +90,10 @@ struct TrainNode : Node {
   void check(const NodeContext& context) const override {
     const auto target = load_problem(context.inputs("problem").front());
     check_needs(*target);
-    solver->check(target->spaces(), !value.id.empty());
     check_samples(context.inputs("samples"));
     if (!policy.id.empty()) load_policy(context.inputs("policy").front(), *target);
     for (const InputNode& node : context.inputs("samples")) require_samples_of(node, *target);
+    solver->check(target->spaces(), !value.id.empty());
   }
 
   std::shared_ptr<const Spaces> spaces(const NodeContext& context) const override {

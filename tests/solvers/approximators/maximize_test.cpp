@@ -216,6 +216,34 @@ TEST(Maximize, AscentEndsWhereNoAxisGivesMoreMostlyAtTheMaximum) {
   EXPECT_GT(largest, several * 9 / 10);
 }
 
+TEST(Maximize, WithoutActionAxesIsThePredictionByEachMethod) {
+  for (std::uint64_t trial = 0; trial < 60; ++trial) {
+    const Forest forest = forest_of(random_case(trial).trees);
+    const std::vector<double> prefix(forest.inputs(), 0.25);
+    double value = 0;
+    forest.predict(prefix, {&value, 1});
+    using enum Maximization::Method;
+    for (const auto method : {merge, exact, ascent}) {
+      const Maximum found = maximize(forest, prefix, {}, {method, 50});
+      EXPECT_EQ(found.at.size(), 0U);
+      EXPECT_NEAR(found.value, value, 1e-12) << "trial " << trial;
+    }
+  }
+}
+
+TEST(Maximize, AscentGoesAlongAxesWithoutAnEnd) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (std::uint64_t trial = 0; trial < 300; ++trial) {
+    Case test = random_case(trial);
+    if (test.trees[0].leaf == LeafModel::linear) continue;  // has no maximum there
+    for (Axis& axis : test.axes) axis = {"a", "", -kInfinity, kInfinity};
+    const Forest forest = forest_of(test.trees);
+    const Maximum found = maximize(forest, test.prefix, test.axes, kAscent);
+    ASSERT_EQ(found.value, predicted(forest, test, found)) << "trial " << trial;
+    ASSERT_LE(found.value, maximize(forest, test.prefix, test.axes, kExact).value + 1e-12);
+  }
+}
+
 TEST(Maximize, RefusesABoxThatDoesNotFit) {
   const Forest forest = forest_of({random_case(0).trees});
   const std::vector<double> prefix(forest.inputs());
