@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "registry/component.h"
 #include "tests/cli/process.h"
 #include "tests/support/places.h"
 
@@ -109,6 +110,16 @@ TEST(Docs, ExamplesInHelpWork) {
     ++executed;
   }
   EXPECT_GE(executed, 20U);
+}
+
+TEST(Docs, ReadmeNamesEveryComponentThatUsersName) {
+  const std::string readme = TemporaryFolder::read(kSource / "README.md");
+  for (const std::string& interface : Catalogue::instance().interfaces()) {
+    if (interface == "function" || interface == "report") continue;  // made by others
+    for (const std::string& name : Catalogue::instance().names(interface)) {
+      EXPECT_NE(readme.find('`' + name + '`'), std::string::npos) << interface << " " << name;
+    }
+  }
 }
 
 TEST(Docs, ManualIsWhatTheDeclarationsSay) {
