@@ -253,9 +253,9 @@ void check_maximization(const ForestKind& forest, std::size_t free_inputs, const
   }
   if (forest.is_oblique && free_inputs > 1) {
     throw std::invalid_argument(fmt::format(
-        "forests with oblique splits cannot be maximized over {} inputs: their leaves are no boxes; valid "
-        "are "
-        "axis-aligned splits (splits=\"axis\"), or a single input that is left free (one action axis)",
+        "forests with oblique splits cannot be maximized over {} inputs: their leaves are no boxes; "
+        "valid are axis-aligned splits (splits=\"axis\"), or a single input that is left free (one action "
+        "axis)",
         free_inputs));
   }
 }
