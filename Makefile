@@ -44,4 +44,4 @@ format:
 	@git ls-files '*.cpp' '*.h' | xargs clang-format -i
 
 clean:
-	@rm -rf build build-asan build-tsan build-dev
+	@rm -rf build build-asan build-tsan build-dev build-tidy

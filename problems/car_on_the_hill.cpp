@@ -72,7 +72,7 @@ struct CarOnTheHill {
   }
 };
 
-const Component<Problem, CarOnTheHill> kComponent(
+const Component<Problem, CarOnTheHill> kCarOnTheHill(
     "car_on_the_hill", "Bring an underpowered car to the top of a hill: +1 there, -1 for leaving the limits.",
     "Hofer 2017, section 1.1.2; Ernst, Geurts and Wehenkel 2005");
 

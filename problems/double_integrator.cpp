@@ -71,7 +71,7 @@ struct DoubleIntegrator {
   }
 };
 
-const Component<Problem, DoubleIntegrator> kComponent(
+const Component<Problem, DoubleIntegrator> kDoubleIntegrator(
     "double_integrator", "Bring a mass on a line to rest at the origin by bounded accelerations.",
     "Hofer 2017, section 1.1.1; Santamaria, Sutton and Ram 1997");
 

@@ -85,7 +85,7 @@ struct InvertedPendulum {
   }
 };
 
-const Component<Problem, InvertedPendulum> kComponent(
+const Component<Problem, InvertedPendulum> kInvertedPendulum(
     "inverted_pendulum", "Keep a pendulum upright by a noisy force on its cart.",
     "Hofer 2017, section 1.1.3; Wang, Tanaka and Griffin 1996; Pazis and Lagoudakis 2009");
 

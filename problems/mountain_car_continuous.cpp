@@ -48,7 +48,7 @@ struct MountainCarContinuous {
   }
 };
 
-const Component<Problem, MountainCarContinuous> kComponent(
+const Component<Problem, MountainCarContinuous> kMountainCarContinuous(
     "mountain_car_continuous", "Gymnasium's MountainCarContinuous-v0: rock a weak car up a hill.",
     "Moore 1990; Towers et al. 2024, Gymnasium; its MountainCarContinuous-v0");
 

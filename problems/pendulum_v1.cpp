@@ -50,7 +50,7 @@ struct PendulumV1 {
   }
 };
 
-const Component<Problem, PendulumV1> kComponent(
+const Component<Problem, PendulumV1> kPendulumV1(
     "pendulum_v1", "Gymnasium's Pendulum-v1: swing up a pendulum by small torques.",
     "Towers et al. 2024, Gymnasium; its Pendulum-v1");
 

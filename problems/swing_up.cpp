@@ -90,7 +90,7 @@ struct SwingUp {
   }
 };
 
-const Component<Problem, SwingUp> kComponent(
+const Component<Problem, SwingUp> kSwingUp(
     "swing_up", "Swing a pendulum up and hold it there by a motor too weak to lift it.",
     "Hofer 2017, section 1.1.4");
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,6 +12,8 @@
 #include "engine/graph/node.h"
 
 namespace coppice {
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();  ///< an empty cell
 
 /// A node as a table names it.
 struct Entry {

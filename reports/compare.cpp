@@ -189,7 +189,7 @@ struct CompareNode : Node {
   }
 };
 
-const Component<Node, CompareNode> kComponent(
+const Component<Node, CompareNode> kCompareNode(
     "compare",
     "Compare evaluated policies two by two: difference with interval, p-value, who is likely better.",
     "Welch 1947; Newcombe 1998 (shares); Holm 1979; Agarwal et al. 2021 (probability of improvement)", 4);

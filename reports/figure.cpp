@@ -227,7 +227,7 @@ struct FigureNode : Node {
   }
 };
 
-const Component<Node, FigureNode> kComponent(
+const Component<Node, FigureNode> kFigureNode(
     "figure", "Make a figure: tidy data, and a Vega-Lite specification that draws it.",
     "Agarwal et al. 2021 (performance profiles)", 5);
 

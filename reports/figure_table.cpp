@@ -12,18 +12,17 @@
 namespace coppice {
 namespace {
 
-using Type = ColumnInfo::Type;
-
 constexpr const char* kDrawn = "drawn";
 
 void add_interval_columns(Table& table) {
-  table.columns.push_back({"ci95_low", Type::number, "", "Lower end of its 95 % interval."});
-  table.columns.push_back({"ci95_high", Type::number, "", "Upper end of that interval."});
+  table.columns.push_back({"ci95_low", ColumnInfo::Type::number, "", "Lower end of its 95 % interval."});
+  table.columns.push_back({"ci95_high", ColumnInfo::Type::number, "", "Upper end of that interval."});
 }
 
 void add_estimate_columns(Table& table, const std::string& what) {
-  table.columns.push_back({"n", Type::integer, "", "Training runs, or other independent repetitions."});
-  table.columns.push_back({"mean", Type::number, "", fmt::format("Mean {}.", what)});
+  table.columns.push_back(
+      {"n", ColumnInfo::Type::integer, "", "Training runs, or other independent repetitions."});
+  table.columns.push_back({"mean", ColumnInfo::Type::number, "", fmt::format("Mean {}.", what)});
   add_interval_columns(table);
 }
 
@@ -88,11 +87,11 @@ Table curve_table(const FigureInputs& inputs, const std::string& x, const std::s
   Table table;
   table.columns = inputs.keys.columns;
   table.reproducible = !is_time(x);
-  table.columns.push_back({x, Type::number, is_time(x) ? "s" : "",
+  table.columns.push_back({x, ColumnInfo::Type::number, is_time(x) ? "s" : "",
                            is_time(x) ? "Time of learning; differs from run to run." : "Progress."});
   add_estimate_columns(table, y);
   const bool has_points = inputs.lines < inputs.nodes.size();
-  if (has_points) table.columns.push_back({kDrawn, Type::text, "", "As what: line or point."});
+  if (has_points) table.columns.push_back({kDrawn, ColumnInfo::Type::text, "", "As what: line or point."});
   for (std::size_t i = 0; i < inputs.groups.size(); ++i) {
     if (inputs.groups[i].entries.front() >= inputs.lines) {
       add_observations(table, inputs, i, x, y);
@@ -124,9 +123,10 @@ Table interval_table(const FigureInputs& inputs, Metric metric) {
 Table histogram_table(const FigureInputs& inputs, Metric metric, std::size_t bins) {
   Table table;
   table.columns = inputs.keys.columns;
-  table.columns.push_back({"bin_low", Type::number, "", "Where the bin begins."});
-  table.columns.push_back({"bin_high", Type::number, "", "Where it ends; the last bin holds its end."});
-  table.columns.push_back({"count", Type::integer, "", "Training runs in it, or episodes."});
+  table.columns.push_back({"bin_low", ColumnInfo::Type::number, "", "Where the bin begins."});
+  table.columns.push_back(
+      {"bin_high", ColumnInfo::Type::number, "", "Where it ends; the last bin holds its end."});
+  table.columns.push_back({"count", ColumnInfo::Type::integer, "", "Training runs in it, or episodes."});
   const std::vector<std::vector<double>> groups = values_of(inputs, metric);
   const std::vector<double> ends = bin_ends(joined(groups), bins);
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -147,9 +147,10 @@ Table profile_table(const FigureInputs& inputs, Metric metric, Better better) {
   constexpr std::size_t kThresholds = 100;
   Table table;
   table.columns = inputs.keys.columns;
-  table.columns.push_back({"threshold", Type::number, "", fmt::format("Of {}.", metric_doc(metric))});
   table.columns.push_back(
-      {"share", Type::number, "", "Share of training runs, or episodes, better than it."});
+      {"threshold", ColumnInfo::Type::number, "", fmt::format("Of {}.", metric_doc(metric))});
+  table.columns.push_back(
+      {"share", ColumnInfo::Type::number, "", "Share of training runs, or episodes, better than it."});
   add_interval_columns(table);
   const std::vector<std::vector<double>> groups = values_of(inputs, metric);
   const std::vector<double> thresholds = bin_ends(joined(groups), kThresholds);

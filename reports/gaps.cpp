@@ -54,7 +54,7 @@ struct GapsNode : SearchReport {
   static Parameters<GapsNode> parameters() { return search_report_parameters<GapsNode>(); }
 };
 
-const Component<Node, GapsNode> kComponent(
+const Component<Node, GapsNode> kGapsNode(
     "gaps", "How near searches came to the optimum: median with bound, mean, worst and best.",
     "no publication");
 

@@ -144,7 +144,7 @@ struct IohprofilerNode : Node {
   }
 };
 
-const Component<Node, IohprofilerNode> kComponent(
+const Component<Node, IohprofilerNode> kIohprofilerNode(
     "iohprofiler", "Write the history of searches as logs that IOHanalyzer reads.",
     "Doerr et al., IOHprofiler, arXiv 1810.05281 (2018); two-column format");
 

@@ -127,7 +127,7 @@ struct Page : Report {
   static Parameters<Page> parameters() { return {}; }
 };
 
-const Component<Report, Page> kComponent(
+const Component<Report, Page> kPage(
     "page", "Tables, state of the nodes and provenance of an experiment on one page, report.html.",
     "no publication");
 

@@ -97,7 +97,7 @@ struct RuntimesNode : SearchReport {
   }
 };
 
-const Component<Node, RuntimesNode> kComponent(
+const Component<Node, RuntimesNode> kRuntimesNode(
     "runtimes", "Expected running times and success rates of searches, for several targets.",
     "Hansen et al., INRIA RR-6828 (2009) (expected running time); Wilson 1927 (success rate)");
 

@@ -13,8 +13,6 @@
 namespace coppice {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
 /// A summary of evaluations, a row for each combination of keys.
 struct TableNode : Node {
   using Node::check;
@@ -145,12 +143,12 @@ struct TableNode : Node {
     row.emplace_back(estimate.median);
   }
   static void add_interval(std::vector<Cell>& row, const std::optional<Interval>& interval) {
-    row.emplace_back(interval ? interval->low : kMissing);
-    row.emplace_back(interval ? interval->high : kMissing);
+    row.emplace_back(interval ? interval->low : kUnknown);
+    row.emplace_back(interval ? interval->high : kUnknown);
   }
 };
 
-const Component<Node, TableNode> kComponent(
+const Component<Node, TableNode> kTableNode(
     "table", "Summarize evaluations: mean, interval, interquartile mean, worst and best of replicates.",
     "Agarwal et al. 2021 (interquartile mean, optimality gap)", 7);
 

@@ -13,8 +13,6 @@
 namespace coppice {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
 enum class Time { cpu, wall, episode, action };
 constexpr std::array<const char*, 4> kTimeColumns = {"cpu_s", "wall_s", "episode_s", "action_s"};
 enum class Per { node, episodes, steps, iterations, samples };
@@ -88,7 +86,7 @@ struct TimingsNode : Node {
   double measured(const InputNode& node) const {
     const Table timing = read_table(node.folder / "timing.csv");
     const auto value = [&](const char* column) {
-      return timing.has(column) ? number(timing.rows.at(0)[timing.column(column)]) : kMissing;
+      return timing.has(column) ? number(timing.rows.at(0)[timing.column(column)]) : kUnknown;
     };
     const double seconds = value(kTimeColumns.at(static_cast<std::size_t>(time)));
     return per == Per::node ? seconds : seconds / value(kCounters.at(static_cast<std::size_t>(per)));
@@ -98,15 +96,15 @@ struct TimingsNode : Node {
     const Estimate summary = estimate(values, Better::lower);
     row.emplace_back(static_cast<std::int64_t>(values.size()));
     row.emplace_back(summary.mean);
-    row.emplace_back(summary.ci95 ? summary.ci95->low : kMissing);
-    row.emplace_back(summary.ci95 ? summary.ci95->high : kMissing);
+    row.emplace_back(summary.ci95 ? summary.ci95->low : kUnknown);
+    row.emplace_back(summary.ci95 ? summary.ci95->high : kUnknown);
     row.emplace_back(summary.median);
     row.emplace_back(summary.worst);
   }
 };
 
-const Component<Node, TimingsNode> kComponent("timings", "Show what nodes cost in time.", "no publication",
-                                              2);
+const Component<Node, TimingsNode> kTimingsNode("timings", "Show what nodes cost in time.", "no publication",
+                                                2);
 
 }  // namespace
 }  // namespace coppice

@@ -116,9 +116,9 @@ std::unique_ptr<Training> Fpf::start(const TrainingInputs& inputs) const {
   return std::make_unique<FpfTraining>(*this, inputs);
 }
 
-const Component<Solver, Fpf> kComponent("fpf",
-                                        "Fitted policy forests: a forest that says the best action directly.",
-                                        "L. Hofer's thesis (2017), Algorithm 15", 2);
+const Component<Solver, Fpf> kFpf("fpf",
+                                  "Fitted policy forests: a forest that says the best action directly.",
+                                  "L. Hofer's thesis (2017), Algorithm 15", 2);
 
 }  // namespace
 }  // namespace coppice

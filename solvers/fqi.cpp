@@ -40,7 +40,7 @@ std::unique_ptr<Training> Fqi::start(const TrainingInputs& inputs) const {
   return std::make_unique<FqiTraining>(*this, inputs);
 }
 
-const Component<Solver, Fqi> kComponent(
+const Component<Solver, Fqi> kFqi(
     "fqi", "Fitted Q iteration; its policy looks for the best action in each state.",
     "Ernst, Geurts and Wehenkel, JMLR 6 (2005); L. Hofer's thesis (2017), Algorithms 13 and 14", 2);
 

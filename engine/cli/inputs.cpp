@@ -21,13 +21,13 @@ std::vector<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
-struct Words {
+struct SortedWords {
   std::vector<std::string> configs;
   std::vector<Override> overrides;
 };
 
-Words sorted(const CommandLine& line, const std::vector<std::string>& words) {
-  Words sorted;
+SortedWords sorted(const CommandLine& line, const std::vector<std::string>& words) {
+  SortedWords sorted;
   for (const std::string& word : words) {
     const std::size_t assign = word.find(":=");
     if (assign == std::string::npos) {
@@ -45,7 +45,7 @@ Words sorted(const CommandLine& line, const std::vector<std::string>& words) {
 /// The mistakes go to `diagnostics`.
 std::vector<ExperimentConfig> expand_all(const CommandLine& line, const ConfigInputs& inputs,
                                          Diagnostics& diagnostics) {
-  Words words = sorted(line, inputs.words);
+  SortedWords words = sorted(line, inputs.words);
   std::vector<ExperimentConfig> experiments;
   bool all_there = true;
   for (const std::string& config : words.configs) {

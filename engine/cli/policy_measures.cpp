@@ -38,9 +38,9 @@ void draw_state(const Space& axes, const Draws& draws, Purpose purpose, std::spa
 }
 
 /// Acts in states one by one, each the first of an episode.
-class Actor {
+class FreshActor {
  public:
-  explicit Actor(const ReadyPolicy& ready) : ready_(ready), memory_(ready.policy->memory_size()) {}
+  explicit FreshActor(const ReadyPolicy& ready) : ready_(ready), memory_(ready.policy->memory_size()) {}
 
   const Action& act(std::span<const double> state, const Draws& draws) {
     ready_.policy->reset(memory_);
@@ -112,7 +112,7 @@ std::vector<double> importance(const ReadyPolicy& ready) {
   const Space& axes = ready.spaces.states;
   if (!bounded(axes)) return {};
   const Draws draws(0, "importance", 0);
-  Actor actor(ready);
+  FreshActor actor(ready);
   std::vector<double> state(axes.size()), other(axes.size());
   std::vector<double> lost(axes.size());
   double variance = 0;

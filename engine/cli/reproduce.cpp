@@ -21,15 +21,13 @@ namespace coppice::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
-
 /// Program, machine and input files of a recorded run, by name; empty where nothing is recorded.
 std::map<std::string, std::string> circumstances(const fs::path& run_folder) {
   std::map<std::string, std::string> found;
   try {
-    const Json record = Json::parse(read_file(run_folder / "provenance.json"));
+    const nlohmann::json record = nlohmann::json::parse(read_file(run_folder / "provenance.json"));
     for (const auto& [name, value] : record.at("environment").items()) found[name] = value.get<std::string>();
-    for (const Json& input : record.at("inputs"))
+    for (const nlohmann::json& input : record.at("inputs"))
       found["input " + input.at("path").get<std::string>()] = input.at("hash").get<std::string>();
   } catch (const std::exception&) {  // damaged, or not there
     return {};

@@ -12,10 +12,6 @@ namespace {
 
 using Kind = ExpressionNode::Kind;
 
-ExpressionError at(const ExpressionNode& node, const std::string& message, const std::string& hint = {}) {
-  return {node.offset, node.length, message, hint};
-}
-
 Value lookup(const ExpressionNode& node, const Names& names) {
   if (const Value* value = names.find(node.text)) return *value;
   if (node.text == "dirname") return Value::text(names.folder());  // as $(dirname), which has no parentheses
@@ -33,8 +29,8 @@ void require_names(const ExpressionNode& node, const Names& names) {
 bool truth(const ExpressionNode& node, const Names& names, std::string_view role) {
   const Value value = evaluate_node(node, names);
   if (const bool* truth_value = value.as_boolean()) return *truth_value;
-  throw at(node, fmt::format("{} must be true or false, not {}", role, value.description()),
-           "compare it: x > 0");
+  throw node.error(fmt::format("{} must be true or false, not {}", role, value.description()),
+                   "compare it: x > 0");
 }
 
 Value logical(const ExpressionNode& node, const Names& names) {
@@ -67,8 +63,8 @@ Value pick(const ExpressionNode& node, const Names& names) {
     }
   }
   if (chosen == nullptr) {
-    throw at(*node.children[0], fmt::format("pick has no key '{}'", selector.to_text()),
-             fmt::format("its keys: {}", join(keys)));
+    throw node.children[0]->error(fmt::format("pick has no key '{}'", selector.to_text()),
+                                  fmt::format("its keys: {}", join(keys)));
   }
   return evaluate_node(*chosen, names);
 }
@@ -78,16 +74,16 @@ Value index(const ExpressionNode& node, const Names& names) {
   const Value position = evaluate_node(*node.children[1], names);
   const List* list = value.as_list();
   if (list == nullptr) {
-    throw at(*node.children[0], fmt::format("only a list has an index, not {}", value.description()));
+    throw node.children[0]->error(fmt::format("only a list has an index, not {}", value.description()));
   }
   const double* number = position.as_plain_number();
   if (number == nullptr || *number != std::floor(*number)) {
-    throw at(*node.children[1], fmt::format("an index must be an integer, not {}", position.description()));
+    throw node.children[1]->error(fmt::format("an index must be an integer, not {}", position.description()));
   }
   if (!(*number >= 0 && *number < static_cast<double>(list->size()))) {
-    throw at(*node.children[1],
-             fmt::format("index {} is outside of a list of {}", position.to_text(), list->size()),
-             list->empty() ? "the list is empty" : fmt::format("valid: 0 to {}", list->size() - 1));
+    throw node.children[1]->error(
+        fmt::format("index {} is outside of a list of {}", position.to_text(), list->size()),
+        list->empty() ? "the list is empty" : fmt::format("valid: 0 to {}", list->size() - 1));
   }
   return (*list)[static_cast<std::size_t>(*number)];
 }
@@ -96,7 +92,7 @@ Value negate(const ExpressionNode& node, const Names& names) {
   const Value value = evaluate_node(*node.children[0], names);
   const Quantity* quantity = value.as_quantity();
   if (quantity == nullptr) {
-    throw at(*node.children[0], fmt::format("'{}' needs a number, not {}", node.text, value.description()));
+    throw node.children[0]->error(fmt::format("'{}' needs a number, not {}", node.text, value.description()));
   }
   if (node.kind == Kind::plus) return value;
   return Value::quantity({-quantity->value, quantity->dimension});
@@ -104,14 +100,14 @@ Value negate(const ExpressionNode& node, const Names& names) {
 
 Value environment(const ExpressionNode& node, const Names& names) {
   const Value name = evaluate_node(*node.children[0], names);
-  if (name.as_text() == nullptr) throw at(*node.children[0], "env needs a name, such as env(HOME)");
+  if (name.as_text() == nullptr) throw node.children[0]->error("env needs a name, such as env(HOME)");
   if (const char* value = std::getenv(name.as_text()->c_str())) {
     if (node.children.size() > 1) require_names(*node.children[1], names);
     return Value::inferred(value);
   }
   if (node.children.size() > 1) return evaluate_node(*node.children[1], names);
-  throw at(*node.children[0], fmt::format("there is no environment variable '{}'", *name.as_text()),
-           "env(NAME, default) gives a default");
+  throw node.children[0]->error(fmt::format("there is no environment variable '{}'", *name.as_text()),
+                                "env(NAME, default) gives a default");
 }
 
 Value call(const ExpressionNode& node, const Names& names) {

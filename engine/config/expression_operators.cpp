@@ -10,21 +10,17 @@ namespace {
 
 constexpr int kLargestExponent = 9;  // as in registry/units.h: what can be written can be read back
 
-ExpressionError at(const ExpressionNode& node, const std::string& message, const std::string& hint = {}) {
-  return {node.offset, node.length, message, hint};
-}
-
 ExpressionError mismatch(const ExpressionNode& node, const Value& left, const Value& right) {
-  return at(node, fmt::format("'{}' needs the same dimension on both sides: {}; {}", node.text,
-                              left.description(), right.description()));
+  return node.error(fmt::format("'{}' needs the same dimension on both sides: {}; {}", node.text,
+                                left.description(), right.description()));
 }
 
 Value make(const ExpressionNode& node, double value, const Dimension& dimension, const Quantity& a,
            const Quantity& b) {
   for (const int exponent : dimension) {
     if (std::abs(exponent) > kLargestExponent) {
-      throw at(node,
-               fmt::format("'{}' gives a quantity in {}, a power too high", node.text, unit_text(dimension)));
+      throw node.error(
+          fmt::format("'{}' gives a quantity in {}, a power too high", node.text, unit_text(dimension)));
     }
   }
   return Value::quantity({checked(value, std::isfinite(a.value) && std::isfinite(b.value), node), dimension});
@@ -55,20 +51,20 @@ double integer_power(double x, int n) {
 Value power(const ExpressionNode& node, const Quantity& base, const Quantity& exponent) {
   constexpr double kSmall = 1024;
   if (exponent.dimension != Dimension{}) {
-    throw at(*node.children[1], fmt::format("an exponent must be a plain number, not {}",
-                                            Value::quantity(exponent).description()));
+    throw node.children[1]->error(
+        fmt::format("an exponent must be a plain number, not {}", Value::quantity(exponent).description()));
   }
   const bool integer = exponent.value == std::floor(exponent.value) && std::abs(exponent.value) <= kSmall;
-  if (base.value == 0 && exponent.value < 0) throw at(node, "zero has no negative power");
+  if (base.value == 0 && exponent.value < 0) throw node.error("zero has no negative power");
   if (integer) {
     const int n = static_cast<int>(exponent.value);
     return make(node, integer_power(base.value, n), scaled(base.dimension, n), base, exponent);
   }
   if (base.dimension != Dimension{}) {
-    throw at(*node.children[1], "a quantity with a unit can only be raised to an integer",
-             "sqrt(x) halves the unit");
+    throw node.children[1]->error("a quantity with a unit can only be raised to an integer",
+                                  "sqrt(x) halves the unit");
   }
-  if (base.value < 0) throw at(*node.children[0], "a negative number has only integer powers");
+  if (base.value < 0) throw node.children[0]->error("a negative number has only integer powers");
   if (base.value == 0) return make(node, 0, {}, base, exponent);
   return make(node, elementary::pow(base.value, exponent.value), {}, base, exponent);
 }
@@ -84,7 +80,7 @@ Value arithmetic(const ExpressionNode& node, const Value& left, const Value& rig
   const char op = node.text == "**" ? '^' : node.text.front();
   const bool same = a.dimension == b.dimension;
   if ((op == '+' || op == '-' || op == '%') && !same) throw mismatch(node, left, right);
-  if ((op == '/' || op == '%') && b.value == 0) throw at(*node.children[1], "division by zero");
+  if ((op == '/' || op == '%') && b.value == 0) throw node.children[1]->error("division by zero");
   switch (op) {
     case '+':
       return make(node, a.value + b.value, a.dimension, a, b);
@@ -105,16 +101,16 @@ Value comparison(const ExpressionNode& node, const Value& left, const Value& rig
   if (node.text == "==" || node.text == "!=") {
     const std::optional<bool> same = equal(left, right);
     if (!same) {
-      throw at(node, fmt::format("'{}' cannot compare {} and {}", node.text, left.description(),
-                                 right.description()));
+      throw node.error(
+          fmt::format("'{}' cannot compare {} and {}", node.text, left.description(), right.description()));
     }
     return Value::boolean(*same == (node.text == "=="));
   }
   const Quantity *a = left.as_quantity(), *b = right.as_quantity();
   if (a == nullptr || b == nullptr) {
     const Value& wrong = a == nullptr ? left : right;
-    throw at(*node.children[a == nullptr ? 0 : 1],
-             fmt::format("'{}' compares numbers, not {}", node.text, wrong.description()));
+    throw node.children[a == nullptr ? 0 : 1]->error(
+        fmt::format("'{}' compares numbers, not {}", node.text, wrong.description()));
   }
   if (a->dimension != b->dimension) throw mismatch(node, left, right);
   const bool less = a->value<b->value, more = a->value> b->value;
@@ -126,8 +122,8 @@ Value comparison(const ExpressionNode& node, const Value& left, const Value& rig
 }  // namespace
 
 double checked(double value, bool finite_operands, const ExpressionNode& node) {
-  if (std::isnan(value)) throw at(node, fmt::format("the result of '{}' is not a number", node.text));
-  if (std::isinf(value) && finite_operands) throw at(node, fmt::format("'{}' overflows", node.text));
+  if (std::isnan(value)) throw node.error(fmt::format("the result of '{}' is not a number", node.text));
+  if (std::isinf(value) && finite_operands) throw node.error(fmt::format("'{}' overflows", node.text));
   return value;
 }
 
@@ -143,9 +139,9 @@ Value apply_operator(const ExpressionNode& node, const Value& left, const Value&
   }
   const bool left_is_wrong = left.as_quantity() == nullptr;
   const bool joins = op == "+" && (left.as_text() || right.as_text());
-  throw at(*node.children[left_is_wrong ? 0 : 1],
-           fmt::format("'{}' needs numbers, not {}", op, (left_is_wrong ? left : right).description()),
-           joins ? "texts are joined by standing side by side: name_${n}" : "");
+  throw node.children[left_is_wrong ? 0 : 1]->error(
+      fmt::format("'{}' needs numbers, not {}", op, (left_is_wrong ? left : right).description()),
+      joins ? "texts are joined by standing side by side: name_${n}" : "");
 }
 
 }  // namespace coppice::config

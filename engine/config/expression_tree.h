@@ -34,6 +34,11 @@ struct ExpressionNode {
   /// Operands in the order of the text; a conditional's are: value, condition, other value.
   std::vector<std::unique_ptr<const ExpressionNode>> children;
   std::vector<Value> keys;  ///< of pick's choices: keys[i] belongs to children[i + 1]
+
+  /// A mistake here.
+  ExpressionError error(const std::string& message, const std::string& hint = {}) const {
+    return {offset, length, message, hint};
+  }
 };
 
 using Tree = std::unique_ptr<const ExpressionNode>;

@@ -20,6 +20,7 @@
 #include <stdexcept>
 
 #include "engine/data/file_system.h"
+#include "engine/graph/seconds.h"
 
 namespace coppice {
 namespace {
@@ -32,10 +33,6 @@ constexpr const char* kParentVariable = "COPPICE_PARENT";
 double grace(bool late, double time_limit) {
   constexpr double kMost = 5.0, kLeast = 0.5;
   return late ? std::clamp(0.1 * time_limit, kLeast, kMost) : kMost;
-}
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 /// The child's standard error, read by this process.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/graph/provenance.h"
+#include "engine/graph/seconds.h"
 
 namespace coppice {
 namespace {
@@ -12,10 +13,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kTick(100);
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 std::vector<const Plan*> plans_of(const std::vector<std::unique_ptr<Workspace>>& workspaces) {
   std::vector<const Plan*> plans;

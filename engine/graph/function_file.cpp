@@ -4,9 +4,9 @@
 namespace coppice {
 namespace {
 
-constexpr FileKind kKind = {"function", std::string_view("\x89"
-                                                         "CPF\r\n\x1a\n",
-                                                         8)};
+constexpr FileKind kFunctionFileKind = {"function", std::string_view("\x89"
+                                                                     "CPF\r\n\x1a\n",
+                                                                     8)};
 
 }  // namespace
 
@@ -18,12 +18,12 @@ void write_function_file(const std::filesystem::path& file, const FunctionFile& 
   for (const std::string& input : content.inputs) append_text(body, input);
   append_text(body, content.output);
   append_component(body, content.component, content.arrays);
-  write_component_file(file, kKind, body);
+  write_component_file(file, kFunctionFileKind, body);
 }
 
 FunctionFile read_function_file(const std::filesystem::path& file) {
   FunctionFile content;
-  parse_component_file(component_file_bytes(file), file, kKind, [&](ByteReader& bytes) {
+  parse_component_file(component_file_bytes(file), file, kFunctionFileKind, [&](ByteReader& bytes) {
     content.writer = bytes.text("the writer's name");
     content.provenance = bytes.text("the provenance key");
     const auto inputs = bytes.number<std::uint32_t>("the number of inputs");

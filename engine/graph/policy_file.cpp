@@ -6,9 +6,9 @@ namespace {
 
 // The magic number's bytes are chosen as PNG's: a transfer that strips the eighth bit or changes line ends
 // destroys it.
-constexpr FileKind kKind = {"policy", std::string_view("\x89"
-                                                       "CPP\r\n\x1a\n",
-                                                       8)};
+constexpr FileKind kPolicyFileKind = {"policy", std::string_view("\x89"
+                                                                 "CPP\r\n\x1a\n",
+                                                                 8)};
 
 void append_axes(std::string& out, const Space& axes) {
   append_number(out, static_cast<std::uint32_t>(axes.size()));
@@ -64,12 +64,12 @@ void write_policy_file(const std::filesystem::path& file, const PolicyFile& cont
   append_text(body, content.provenance);
   append_spaces(body, content.spaces);
   append_component(body, content.component, content.arrays);
-  write_component_file(file, kKind, body);
+  write_component_file(file, kPolicyFileKind, body);
 }
 
 PolicyFile parse_policy_file(std::string_view bytes, const std::filesystem::path& file) {
   PolicyFile content;
-  parse_component_file(bytes, file, kKind, [&](ByteReader& reader) {
+  parse_component_file(bytes, file, kPolicyFileKind, [&](ByteReader& reader) {
     content.writer = reader.text("the writer's name");
     content.provenance = reader.text("the provenance key");
     content.spaces = read_spaces(reader);

@@ -6,12 +6,13 @@
 #include <stdexcept>
 
 namespace coppice {
-namespace {
 
 double centre(const Axis& axis) {
   if (std::isfinite(axis.low) && std::isfinite(axis.high)) return axis.low / 2 + axis.high / 2;
   return std::clamp(0.0, axis.low, axis.high);
 }
+
+namespace {
 
 double clamp(double value, const Axis& axis) {
   if (std::isnan(value)) return centre(axis);

@@ -60,6 +60,9 @@ struct Axis {
   friend bool operator==(const Axis&, const Axis&) = default;
 };
 
+/// The middle of an axis; where one has an end at most, 0 or what is nearest to it.
+double centre(const Axis& axis);
+
 /// A box: the axes of a state space.
 using Space = std::vector<Axis>;
 

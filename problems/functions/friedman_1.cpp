@@ -29,7 +29,7 @@ struct Friedman1 : TestFunction {
   }
 };
 
-const Component<TestFunction, Friedman1> kComponent(
+const Component<TestFunction, Friedman1> kFriedman1(
     "friedman_1", "Friedman's first test function: five inputs that matter, and others.",
     "Friedman, Annals of Statistics 19 (1991), 4.3; Breiman, Machine Learning 24 (1996)");
 

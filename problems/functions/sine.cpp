@@ -14,8 +14,8 @@ struct Sine : TestFunction {
   static Parameters<Sine> parameters() { return {}; }
 };
 
-const Component<TestFunction, Sine> kComponent("sine", "sin(x) between -pi and pi.",
-                                               "L. Hofer's thesis (2017), Fig. 2.2");
+const Component<TestFunction, Sine> kSine("sine", "sin(x) between -pi and pi.",
+                                          "L. Hofer's thesis (2017), Fig. 2.2");
 
 }  // namespace
 }  // namespace coppice

@@ -34,9 +34,9 @@ struct Branin : Objective {
   static Parameters<Branin> parameters() { return NoisyFunction::with_noise(Parameters<Branin>()); }
 };
 
-const Component<Objective, Branin> kComponent("branin",
-                                              "Minus Branin's function of two inputs: three equal optima.",
-                                              "Dixon and Szego, Towards Global Optimization 2 (1978)");
+const Component<Objective, Branin> kBranin("branin",
+                                           "Minus Branin's function of two inputs: three equal optima.",
+                                           "Dixon and Szego, Towards Global Optimization 2 (1978)");
 
 }  // namespace
 }  // namespace coppice

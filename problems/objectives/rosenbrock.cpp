@@ -17,7 +17,7 @@ struct Rosenbrock : PlacedFamily {
   static Parameters<Rosenbrock> parameters() { return placed_parameters<Rosenbrock>(2); }
 };
 
-const Component<Objective, Rosenbrock> kComponent(
+const Component<Objective, Rosenbrock> kRosenbrock(
     "rosenbrock", "Minus Rosenbrock's function: a bent valley to an optimum that is drawn.",
     "Rosenbrock, The Computer Journal 3(3) (1960); Hansen et al., INRIA RR-6829 (2009), f8 without its "
     "scale");

@@ -20,7 +20,7 @@ struct RotatedRastrigin : PlacedFamily {
   static Parameters<RotatedRastrigin> parameters() { return placed_parameters<RotatedRastrigin>(); }
 };
 
-const Component<Objective, RotatedRastrigin> kComponent(
+const Component<Objective, RotatedRastrigin> kRotatedRastrigin(
     "rotated_rastrigin",
     "Minus Rastrigin's function in coordinates that are turned at random: a local optimum near every point "
     "of a grid.",

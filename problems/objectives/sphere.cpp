@@ -14,9 +14,9 @@ struct Sphere : PlacedFamily {
   static Parameters<Sphere> parameters() { return placed_parameters<Sphere>(); }
 };
 
-const Component<Objective, Sphere> kComponent("sphere",
-                                              "Minus the squared distance from an optimum that is drawn.",
-                                              "Hansen et al., INRIA RR-6829 (2009), f1");
+const Component<Objective, Sphere> kSphere("sphere",
+                                           "Minus the squared distance from an optimum that is drawn.",
+                                           "Hansen et al., INRIA RR-6829 (2009), f1");
 
 }  // namespace
 }  // namespace coppice

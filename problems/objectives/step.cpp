@@ -31,7 +31,7 @@ struct Step : PlacedFamily {
   }
 };
 
-const Component<Objective, Step> kComponent(
+const Component<Objective, Step> kStep(
     "step",
     "Minus an ellipsoid of steps, turned at random: constant but for jumps, 0 in a cube about its optimum.",
     "Hansen et al., INRIA RR-6829 (2009), f7 without its scale, slope and penalty");

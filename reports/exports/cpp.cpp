@@ -207,7 +207,7 @@ class CppExporter : public Exporter {
   static Parameters<CppExporter> parameters() { return {}; }
 };
 
-const Component<Exporter, CppExporter> kComponent(
+const Component<Exporter, CppExporter> kCppExporter(
     "cpp", "One C++17 header: constant tables and a loop, the same bits, no heap, nothing to link.",
     "no publication");
 

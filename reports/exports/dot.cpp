@@ -155,8 +155,8 @@ class DotExporter : public Exporter {
   static Parameters<DotExporter> parameters() { return {}; }
 };
 
-const Component<Exporter, DotExporter> kComponent("dot", "The trees, for Graphviz to draw.",
-                                                  "no publication");
+const Component<Exporter, DotExporter> kDotExporter("dot", "The trees, for Graphviz to draw.",
+                                                    "no publication");
 
 }  // namespace
 }  // namespace coppice

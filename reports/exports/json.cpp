@@ -85,8 +85,8 @@ class JsonExporter : public Exporter {
   static Parameters<JsonExporter> parameters() { return {}; }
 };
 
-const Component<Exporter, JsonExporter> kComponent("json", "All numbers of the policy, for any program.",
-                                                   "no publication");
+const Component<Exporter, JsonExporter> kJsonExporter("json", "All numbers of the policy, for any program.",
+                                                      "no publication");
 
 }  // namespace
 }  // namespace coppice

@@ -238,7 +238,7 @@ class OnnxExporter : public Exporter {
   static Parameters<OnnxExporter> parameters() { return {}; }
 };
 
-const Component<Exporter, OnnxExporter> kComponent(
+const Component<Exporter, OnnxExporter> kOnnxExporter(
     "onnx", "ONNX in single precision: TreeEnsembleRegressor for forests, ordinary operators for the rest.",
     "onnx.ai/onnx/operators");
 

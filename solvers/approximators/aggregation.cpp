@@ -9,11 +9,10 @@
 namespace coppice {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // The kRank-th smallest and the kRank-th largest value. Without branches, which would be guessed wrongly.
 template <std::size_t kRank>
 std::pair<double, double> order_statistics(std::span<const double> values) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::array<double, kRank> lowest;
   std::array<double, kRank> highest;
   lowest.fill(kInfinity);

@@ -65,11 +65,11 @@ class ConstantApproximator : public Approximator {
   static Parameters<ConstantApproximator> parameters() { return {}; }
 };
 
-const Component<Function, ConstantFunction> kFunction("constant", "The same value everywhere.",
-                                                      "L. Hofer's thesis (2017), 2.1.2");
-const Component<Approximator, ConstantApproximator> kApproximator("constant",
-                                                                  "The mean of the samples' outputs.",
-                                                                  "L. Hofer's thesis (2017), 2.1.2");
+const Component<Function, ConstantFunction> kConstantFunction("constant", "The same value everywhere.",
+                                                              "L. Hofer's thesis (2017), 2.1.2");
+const Component<Approximator, ConstantApproximator> kConstantApproximator("constant",
+                                                                          "The mean of the samples' outputs.",
+                                                                          "L. Hofer's thesis (2017), 2.1.2");
 
 }  // namespace
 }  // namespace coppice

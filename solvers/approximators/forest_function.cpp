@@ -59,8 +59,9 @@ FunctionModel ForestFunction::exported() const {
 }
 
 namespace {
-const Component<Function, ForestFunction> kComponent(ForestFunction::kName, "The mean of regression trees.",
-                                                     "L. Hofer's thesis (2017), 2.1.4", 2);
+const Component<Function, ForestFunction> kForestFunction(ForestFunction::kName,
+                                                          "The mean of regression trees.",
+                                                          "L. Hofer's thesis (2017), 2.1.4", 2);
 }  // namespace
 
 }  // namespace coppice

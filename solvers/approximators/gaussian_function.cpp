@@ -139,7 +139,7 @@ std::vector<std::pair<std::string, double>> GaussianFunction::facts() const {
 }
 
 namespace {
-const Component<Function, GaussianFunction> kComponent(
+const Component<Function, GaussianFunction> kGaussianFunction(
     GaussianFunction::kName, "The mean of a Gaussian process.",
     "Rasmussen and Williams, Gaussian Processes for Machine Learning (2006), 2.2");
 }  // namespace

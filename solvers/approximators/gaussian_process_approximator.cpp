@@ -166,7 +166,7 @@ class GaussianProcessApproximator : public Approximator {
   }
 };
 
-const Component<Approximator, GaussianProcessApproximator> kComponent(
+const Component<Approximator, GaussianProcessApproximator> kGaussianProcessApproximator(
     "gaussian_process",
     "Gaussian process: squared exponential with a length per input, and noise, the most likely ones.",
     "Rasmussen and Williams, Gaussian Processes for Machine Learning (2006), 2.2, 5.4");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -12,8 +13,6 @@ namespace {
 constexpr int kRedraws = 16;
 // Rows whose mean is the centre of sums in single precision.
 constexpr std::size_t kCentreRows = 32;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 }  // namespace
 
 Grower::Grower(const TrainingColumns& samples, const Growth& growth, const TreeKernels& kernels)
@@ -209,7 +208,7 @@ std::uint32_t Grower::bits() {
 float Grower::uniform(float low, float high) {
   const double first = low;
   const auto value = static_cast<float>(first + (high - first) * (bits() * 0x1p-32));
-  return value < high ? value : std::nextafter(high, -kInfinity);
+  return value < high ? value : std::nextafter(high, -std::numeric_limits<float>::infinity());
 }
 
 // k distinct inputs or directions, of those only the ones that vary; their ranges. Returns how many.
@@ -288,7 +287,8 @@ void Grower::prepare_linear_gains() {
     for (std::size_t i = 0; i < block_.size(); i += step, ++count) sum += block_.column(c)[i];
     centre_[c] = static_cast<float>(sum / count);
   }
-  kernels_.low_products(block_, 0, kInfinity, centre_.data(), work_.data(), products_.data());
+  kernels_.low_products(block_, 0, std::numeric_limits<float>::infinity(), centre_.data(), work_.data(),
+                        products_.data());
   whole_.set(centre_, products_);
 }
 

@@ -6,7 +6,7 @@
 namespace coppice {
 namespace {
 
-constexpr std::size_t triangle(std::size_t row) {
+constexpr std::size_t row_begin(std::size_t row) {
   return row * (row + 1) / 2;
 }
 
@@ -16,10 +16,10 @@ Moments::Moments(std::size_t inputs)
     : size_(inputs + 1),
       centre_(size_),
       sum_(size_),
-      product_(triangle(size_)),
+      product_(row_begin(size_)),
       scale_(size_),
-      correlation_(triangle(size_)),
-      cholesky_(triangle(size_)),
+      correlation_(row_begin(size_)),
+      cholesky_(row_begin(size_)),
       solution_(size_) {}
 
 void Moments::reset(std::span<const double> centre) {
@@ -62,17 +62,17 @@ void Moments::set_difference(const Moments& whole, const Moments& part) {
 
 // Product of inputs i and j (the last one is the output) about the samples' own mean.
 double Moments::central(std::size_t i, std::size_t j) const {
-  return product_[triangle(i) + j] - sum_[i] * (sum_[j] / weight_);
+  return product_[row_begin(i) + j] - sum_[i] * (sum_[j] / weight_);
 }
 
 // Cholesky factor of the inputs' correlations, with `ridge` added to the diagonal; false when it is singular.
 bool Moments::factor(double ridge, double dependent) {
   const std::size_t n = size_ - 1;
   for (std::size_t i = 0; i < n; ++i) {
-    double* row = cholesky_.data() + triangle(i);
+    double* row = cholesky_.data() + row_begin(i);
     for (std::size_t j = 0; j <= i; ++j) {
-      const double* other = cholesky_.data() + triangle(j);
-      double rest = correlation_[triangle(i) + j] + (i == j ? ridge : 0.0);
+      const double* other = cholesky_.data() + row_begin(j);
+      double rest = correlation_[row_begin(i) + j] + (i == j ? ridge : 0.0);
       for (std::size_t k = 0; k < j; ++k) rest -= row[k] * other[k];
       if (i == j && !(rest > dependent)) return false;
       row[j] = i == j ? std::sqrt(rest) : rest / other[j];
@@ -87,21 +87,21 @@ double Moments::solve(double dependent) {
   const std::size_t n = size_ - 1;
   for (std::size_t i = 0; i < size_; ++i) {
     const double variance = central(i, i);
-    const double noise = 1e-4 * dependent * product_[triangle(i) + i];  // of a difference
+    const double noise = 1e-4 * dependent * product_[row_begin(i) + i];  // of a difference
     scale_[i] = variance > noise ? std::sqrt(variance) : 0.0;
   }
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const bool varies = scale_[i] > 0 && scale_[j] > 0;
-      correlation_[triangle(i) + j] = varies ? central(i, j) / scale_[i] / scale_[j] : 0.0;
+      correlation_[row_begin(i) + j] = varies ? central(i, j) / scale_[i] / scale_[j] : 0.0;
     }
-    correlation_[triangle(i) + i] = 1;
+    correlation_[row_begin(i) + i] = 1;
   }
   if (!factor(0, dependent)) factor(std::max(kRidge, 10 * dependent), dependent);
   double explained = 0;
   for (std::size_t i = 0; i < n; ++i) {
     double rest = scale_[i] > 0 ? central(n, i) / scale_[i] : 0.0;
-    const double* row = cholesky_.data() + triangle(i);
+    const double* row = cholesky_.data() + row_begin(i);
     for (std::size_t k = 0; k < i; ++k) rest -= row[k] * solution_[k];
     solution_[i] = rest / row[i];
     explained += solution_[i] * solution_[i];
@@ -114,8 +114,8 @@ double Moments::fit(double& bias, std::span<double> slopes) {
   const double residual = solve(kDependent);
   for (std::size_t i = n; i-- > 0;) {
     double rest = solution_[i];
-    for (std::size_t k = i + 1; k < n; ++k) rest -= cholesky_[triangle(k) + i] * solution_[k];
-    solution_[i] = rest / cholesky_[triangle(i) + i];
+    for (std::size_t k = i + 1; k < n; ++k) rest -= cholesky_[row_begin(k) + i] * solution_[k];
+    solution_[i] = rest / cholesky_[row_begin(i) + i];
   }
   bias = centre_[n] + sum_[n] / weight_;
   for (std::size_t i = 0; i < n; ++i) {

@@ -11,8 +11,6 @@
 namespace coppice {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // A place and a piece in one number; such numbers are in the order of the places.
 std::uint64_t break_at(float place, std::size_t piece) {
   return std::uint64_t{ordered(std::bit_cast<std::uint32_t>(place))} << 32 | piece;
@@ -141,6 +139,7 @@ void LineMaximum::sort_breaks() {
 // middle.
 template <LeafModel kLeaf>
 double LineMaximum::best_place(std::size_t trees) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   current_.assign(trees, {});
   Piece sum;
   double most = -kInfinity, best = low_;

@@ -81,10 +81,10 @@ class LinearApproximator : public Approximator {
   static Parameters<LinearApproximator> parameters() { return {}; }
 };
 
-const Component<Function, LinearFunction> kFunction("linear", "A linear function.",
-                                                    "L. Hofer's thesis (2017), 2.1.2");
-const Component<Approximator, LinearApproximator> kApproximator("linear", "Linear least squares.",
-                                                                "L. Hofer's thesis (2017), 2.1.2");
+const Component<Function, LinearFunction> kLinearFunction("linear", "A linear function.",
+                                                          "L. Hofer's thesis (2017), 2.1.2");
+const Component<Approximator, LinearApproximator> kLinearApproximator("linear", "Linear least squares.",
+                                                                      "L. Hofer's thesis (2017), 2.1.2");
 
 }  // namespace
 }  // namespace coppice

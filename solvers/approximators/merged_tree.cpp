@@ -88,7 +88,7 @@ class MergedTree : public Approximator {
   }
 };
 
-const Component<Approximator, MergedTree> kComponent(
+const Component<Approximator, MergedTree> kMergedTree(
     "merged_tree", "A forest merged into a single tree of a bounded number of leaves.",
     "L. Hofer's thesis (2017), Algorithms 9 to 12, Fig. 2.3");
 

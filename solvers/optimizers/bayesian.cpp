@@ -355,7 +355,7 @@ std::unique_ptr<Search> Bayesian::start(const SearchTask& task) const {
   return std::make_unique<BayesianSearch>(*this, task);
 }
 
-const Component<Optimizer, Bayesian> kComponent(
+const Component<Optimizer, Bayesian> kBayesian(
     "bayesian", "Bayesian optimization on a Gaussian process, for costly functions of up to about 10 inputs.",
     "Hoffman, Brochu and de Freitas, Portfolio allocation for Bayesian optimization (UAI 2011); L. Hofer's "
     "thesis (2017), A.4");

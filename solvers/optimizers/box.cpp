@@ -14,11 +14,6 @@ double lower_end(const Axis& axis) {
   return std::isfinite(axis.low) ? axis.low : std::min(0.0, axis.high);
 }
 
-double centre(const Axis& axis) {
-  if (std::isfinite(axis.low) && std::isfinite(axis.high)) return axis.low / 2 + axis.high / 2;
-  return std::clamp(0.0, axis.low, axis.high);
-}
-
 }  // namespace
 
 void check_task(const SearchTask& task, std::string_view method, std::int64_t least) {

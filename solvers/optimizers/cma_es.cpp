@@ -41,7 +41,7 @@ Parameters<CmaEs> CmaEs::parameters() {
 }
 
 namespace {
-const Component<Optimizer, CmaEs> kComponent(
+const Component<Optimizer, CmaEs> kCmaEs(
     "cma_es", "Covariance matrix adaptation evolution strategy, with restarts and an answer to noise.",
     "Hansen, arXiv 1604.00772; Nomura et al., GECCO 2023 (learning rates); Auger and Hansen, CEC 2005 "
     "(IPOP); "

@@ -10,12 +10,6 @@ bool has_width(const Axis& axis) {
   return std::isfinite(axis.low) && std::isfinite(axis.high);
 }
 
-double centre(const Axis& axis) {
-  if (has_width(axis)) return axis.low + (axis.high - axis.low) / 2;
-  if (std::isfinite(axis.low)) return std::max(axis.low, 0.0);
-  return std::isfinite(axis.high) ? std::min(axis.high, 0.0) : 0;
-}
-
 /// Into [0, 1] by mirroring at both ends.
 double mirrored(double u) {
   if (u >= 0 && u <= 1) return u;

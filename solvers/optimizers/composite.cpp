@@ -11,7 +11,7 @@
 namespace coppice {
 namespace {
 
-constexpr std::size_t kMostFinalists = 16;
+constexpr std::size_t kMostProposals = 16;
 
 /// Several optimizers, one after the other, with equal parts of the budget, which is divided once; the best
 /// of their proposals (thesis, 4.1.1). What one leaves over goes to those after it; what all leave over to
@@ -131,7 +131,7 @@ class CompositeSearch : public Search {
     std::stable_sort(proposals_.begin(), proposals_.end(), [](const Proposal& a, const Proposal& b) {
       return comparable(a.second) > comparable(b.second);
     });
-    proposals_.resize(std::min(proposals_.size(), kMostFinalists));
+    proposals_.resize(std::min(proposals_.size(), kMostProposals));
   }
 
   /// The next member that can make use of its part of what is left; false when none can.
@@ -260,7 +260,7 @@ std::unique_ptr<Search> Composite::start(const SearchTask& task) const {
   return std::make_unique<CompositeSearch>(*this, task);
 }
 
-const Component<Optimizer, Composite> kComponent(
+const Component<Optimizer, Composite> kComposite(
     "composite", "Divides its budget between several optimizers and takes the best of their proposals.",
     "L. Hofer's thesis (2017), 4.1.1");
 

@@ -240,7 +240,7 @@ std::unique_ptr<Search> CrossEntropy::start(const SearchTask& task) const {
   return std::make_unique<CrossEntropySearch>(*this, task);
 }
 
-const Component<Optimizer, CrossEntropy> kComponent(
+const Component<Optimizer, CrossEntropy> kCrossEntropy(
     "cross_entropy", "Cross-entropy method: fits a normal distribution to the best samples.",
     "L. Hofer's thesis (2017), A.2; Kroese, Porotsky and Rubinstein, Methodol. Comput. Appl. Probab. 8 "
     "(2006)");

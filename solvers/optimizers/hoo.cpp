@@ -263,7 +263,7 @@ std::unique_ptr<Search> Hoo::start(const SearchTask& task) const {
   return std::make_unique<OptimisticSearch>(*this, task);
 }
 
-const Component<Optimizer, Hoo> kComponent(
+const Component<Optimizer, Hoo> kHoo(
     "hoo", "Hierarchical optimistic optimization of a stochastic function: a tree of ever smaller cells.",
     "S. Bubeck, R. Munos, G. Stoltz and C. Szepesvari, JMLR 12 (2011)");
 

@@ -105,7 +105,7 @@ std::unique_ptr<Search> RandomSearch::start(const SearchTask& task) const {
   return std::make_unique<RandomSearching>(*this, task);
 }
 
-const Component<Optimizer, RandomSearch> kComponent(
+const Component<Optimizer, RandomSearch> kRandomSearch(
     "random_search", "Uniform sampling; under noise a final choice of the best.", "no publication");
 
 }  // namespace

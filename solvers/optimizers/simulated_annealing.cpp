@@ -237,7 +237,7 @@ std::unique_ptr<Search> SimulatedAnnealing::start(const SearchTask& task) const 
   return std::make_unique<Annealing>(*this, task);
 }
 
-const Component<Optimizer, SimulatedAnnealing> kComponent(
+const Component<Optimizer, SimulatedAnnealing> kSimulatedAnnealing(
     "simulated_annealing", "Simulated annealing with linear profiles; returns the best point.",
     "L. Hofer's thesis (2017), Eq. A.1 and A.2; Kirkpatrick, Gelatt and Vecchi, Science 220 (1983)");
 

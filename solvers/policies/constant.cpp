@@ -52,8 +52,8 @@ class ConstantPolicy : public Policy {
   Action action_;
 };
 
-const Component<Policy, ConstantPolicy> kComponent("constant", "Always take the same action.",
-                                                   "no publication");
+const Component<Policy, ConstantPolicy> kConstantPolicy("constant", "Always take the same action.",
+                                                        "no publication");
 
 }  // namespace
 }  // namespace coppice

@@ -65,9 +65,9 @@ class EnergySwingUp : public Policy {
   std::vector<ActionBox> actions_;
 };
 
-const Component<Policy, EnergySwingUp> kComponent("energy_swing_up",
-                                                  "Swing a pendulum up by its energy, then hold it.",
-                                                  "Astrom and Furuta, Automatica 36 (2000)");
+const Component<Policy, EnergySwingUp> kEnergySwingUp("energy_swing_up",
+                                                      "Swing a pendulum up by its energy, then hold it.",
+                                                      "Astrom and Furuta, Automatica 36 (2000)");
 
 }  // namespace
 }  // namespace coppice

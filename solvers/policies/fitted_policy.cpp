@@ -34,9 +34,9 @@ Parameters<FittedPolicy> FittedPolicy::parameters() {
 }
 
 namespace {
-const Component<Policy, FittedPolicy> kComponent(FittedPolicy::kName,
-                                                 "The action that a fitted function says.",
-                                                 "L. Hofer's thesis (2017), Algorithm 15");
+const Component<Policy, FittedPolicy> kFittedPolicy(FittedPolicy::kName,
+                                                    "The action that a fitted function says.",
+                                                    "L. Hofer's thesis (2017), Algorithm 15");
 }  // namespace
 
 }  // namespace coppice

@@ -40,9 +40,9 @@ Parameters<GreedyPolicy> GreedyPolicy::parameters() {
 }
 
 namespace {
-const Component<Policy, GreedyPolicy> kComponent(GreedyPolicy::kName,
-                                                 "The action of the largest value under a learned function.",
-                                                 "L. Hofer's thesis (2017), Eq. 2.10", 2);
+const Component<Policy, GreedyPolicy> kGreedyPolicy(
+    GreedyPolicy::kName, "The action of the largest value under a learned function.",
+    "L. Hofer's thesis (2017), Eq. 2.10", 2);
 }  // namespace
 
 }  // namespace coppice

@@ -69,7 +69,7 @@ class LinearFeedback : public Policy {
   std::vector<double> offset_;  ///< one for each action parameter
 };
 
-const Component<Policy, LinearFeedback> kComponent(
+const Component<Policy, LinearFeedback> kLinearFeedback(
     "linear_feedback", "Linear state feedback u = offset - K s, moved into its box.", "no publication");
 
 }  // namespace

@@ -39,7 +39,7 @@ class RandomPolicy : public Policy {
   std::vector<ActionBox> actions_;
 };
 
-const Component<Policy, RandomPolicy> kComponent(
+const Component<Policy, RandomPolicy> kRandomPolicy(
     "random", "Act at random: uniform over the actions, then over the box.", "no publication");
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kHead =
+const std::string kConfigHead =
     "<experiment coppice=\"1\" name=\"e\" seed=\"3\"><problem id=\"car\"><double_integrator/></problem>"
     "<policy id=\"any\"><random/></policy>";
 const std::string kColumns =
@@ -34,7 +34,7 @@ class BadInput : public RunsInAFolder {
  protected:
   Ended guarded(const std::string& arguments) const { return script(kGuard + "$RUNNER " + arguments); }
   void write(const std::string& nodes, const std::string& file = "e.xml") const {
-    folder_.write(file, kHead + nodes + "</experiment>");
+    folder_.write(file, kConfigHead + nodes + "</experiment>");
   }
   /// The config is refused with one message that has all parts, and nothing is made.
   void refused(const std::string& file, const std::vector<std::string>& parts) const {
@@ -60,11 +60,12 @@ TEST_F(BadInput, ThatIsEnormousIsRefusedQuickly) {
     std::string name, text, message;
   };
   for (const Case& enormous :
-       {Case{"deep", kHead + repeated("<group>", 100'000) + repeated("</group>", 100'000) + "</experiment>",
+       {Case{"deep",
+             kConfigHead + repeated("<group>", 100'000) + repeated("</group>", 100'000) + "</experiment>",
              "nested more than 90 deep"},
-        Case{"unclosed", kHead + repeated("<group>", 100'000), "nested more than 90 deep"},
+        Case{"unclosed", kConfigHead + repeated("<group>", 100'000), "nested more than 90 deep"},
         Case{"value",
-             kHead + "<evaluate id=\"e\" problem=\"car\" policies=\"any\" episodes=\"" +
+             kConfigHead + "<evaluate id=\"e\" problem=\"car\" policies=\"any\" episodes=\"" +
                  std::string(50'000'000, '9') + "\"/></experiment>",
              "bytes left out"},
         Case{"file", std::string(70'000'000, ' '), "larger than 64 MiB"},
@@ -77,17 +78,18 @@ TEST_F(BadInput, ThatIsEnormousIsRefusedQuickly) {
                  }() +
                  "/>",
              "more than 1000 attributes"},
-        Case{"mistakes", kHead + repeated("<bogus/>\n", 100'000) + "</experiment>", "1000 errors"},
-        Case{"mistakes_in_a_line", kHead + repeated("<bogus/>", 100'000) + "</experiment>", "1000 errors"},
+        Case{"mistakes", kConfigHead + repeated("<bogus/>\n", 100'000) + "</experiment>", "1000 errors"},
+        Case{"mistakes_in_a_line", kConfigHead + repeated("<bogus/>", 100'000) + "</experiment>",
+             "1000 errors"},
         Case{"ampersands", "<experiment coppice=\"1\" doc=\"" + std::string(1'000'000, '&') + "\"/>",
              "'&' by itself"},
         Case{"less_than", "<experiment coppice=\"1\" doc=\"" + std::string(1'000'000, '<') + "\"/>",
              "'<' inside"},
         Case{"parentheses",
-             kHead + "<let name=\"a\" value=\"${" + std::string(1'000'000, '(') + "}\"/></experiment>",
+             kConfigHead + "<let name=\"a\" value=\"${" + std::string(1'000'000, '(') + "}\"/></experiment>",
              "100 levels deep"},
         Case{"operators",
-             kHead + "<let name=\"a\" value=\"${" + repeated("1+", 1'000'000) + "1}\"/></experiment>",
+             kConfigHead + "<let name=\"a\" value=\"${" + repeated("1+", 1'000'000) + "1}\"/></experiment>",
              "1000 operators"}}) {
     SCOPED_TRACE(enormous.name);
     const std::string file = enormous.name + ".xml";
@@ -328,7 +330,7 @@ TEST_F(BadInput, PolicyFilesOfEveryKindOfDamage) {
   const std::string whole = TemporaryFolder::read(folder_ / "out/e/nodes/t/policy.policy");
   ASSERT_GT(whole.size(), 100U);
   folder_.write("user.xml",
-                kHead +
+                kConfigHead +
                     "<policy id=\"p\" file=\"x.policy\"/>"
                     "<evaluate id=\"s\" problem=\"car\" policies=\"p\" episodes=\"2\"/></experiment>");
   std::string newer = whole;

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kConfig = R"(<experiment coppice="1" name="learn" seed="11">
+constexpr const char* kChangedConfig = R"(<experiment coppice="1" name="learn" seed="11">
   <arg name="episodes" default="6"/>
   <let name="iterations" value="2"/>
   <sweep id="forests"><grid><param name="trees" values="2, 3"/></grid></sweep>
@@ -51,7 +51,7 @@ void PrintTo(const Change& change, std::ostream* out) {
 class Changes : public RunsInAFolder {
  protected:
   Changes() {
-    write(kConfig);
+    write(kChangedConfig);
     folder_.write("logged.csv", kLogged);
   }
 
@@ -118,9 +118,9 @@ TEST_P(OneChange, RerunsWhatDependsOnItAndNothingElse) {
   const Change& change = GetParam();
   EXPECT_EQ(ids(agreed("learn.xml")), kAll);
   const auto before = results(folder_ / "out/learn/nodes");
-  write(change.from.empty() ? kConfig : replaced(kConfig, change.from, change.to));
+  write(change.from.empty() ? kChangedConfig : replaced(kChangedConfig, change.from, change.to));
   EXPECT_EQ(ids(agreed("learn.xml " + change.arguments)), change.rerun);
-  write(kConfig);  // and back: everything is still in the store
+  write(kChangedConfig);  // and back: everything is still in the store
   EXPECT_EQ(agreed("learn.xml"), Names());
   EXPECT_EQ(results(folder_ / "out/learn/nodes"), before);
 }
@@ -166,20 +166,20 @@ TEST_F(Changes, OfAnInputFile) {
   EXPECT_EQ(ids(agreed("learn.xml")), (Names{"logged", "offline"}));
   EXPECT_TRUE(contains(run("why offline learn.xml").out, "up to date"));
   folder_.write("copy.csv", kLogged);  // the same content, under another name
-  write(replaced(kConfig, "logged.csv", "copy.csv"));
+  write(replaced(kChangedConfig, "logged.csv", "copy.csv"));
   EXPECT_EQ(agreed("learn.xml"), Names());
 }
 
 TEST_F(Changes, OfReplicatesAndSweepPointsKeepTheOthers) {
   EXPECT_EQ(ids(agreed("learn.xml")), kAll);
   const auto before = results(folder_ / "out/learn/nodes");
-  std::string more = replaced(kConfig, "replicates=\"2\"", "replicates=\"3\"");
+  std::string more = replaced(kChangedConfig, "replicates=\"2\"", "replicates=\"3\"");
   more = replaced(more, "replicates=\"2\"", "replicates=\"3\"");
   write(more);
   EXPECT_EQ(agreed("learn.xml"),
             (Names{"samples r002", "learned trees=2 r002", "learned trees=3 r002",
                    "scores trees=2 learned r002", "scores trees=3 learned r002", "costs"}));
-  write(replaced(kConfig, "2, 3", "7, 2, 3"));
+  write(replaced(kChangedConfig, "2, 3", "7, 2, 3"));
   EXPECT_EQ(agreed("learn.xml"),
             (Names{"learned trees=7 r000", "learned trees=7 r001", "scores trees=7 learned r000",
                    "scores trees=7 learned r001", "costs"}));
@@ -193,7 +193,7 @@ TEST_F(Changes, OfReplicatesAndSweepPointsKeepTheOthers) {
 
 TEST_F(Changes, OfNamesAndOrderRerunNothing) {
   EXPECT_EQ(ids(agreed("learn.xml")), kAll);
-  std::string renamed(kConfig);
+  std::string renamed(kChangedConfig);
   for (const auto& [from, to] : {std::pair("id=\"samples\"", "id=\"episodes_of_any\""),
                                  std::pair("samples=\"samples\"", "samples=\"episodes_of_any\""),
                                  std::pair("id=\"lqr\"", "id=\"regulator\""),
@@ -206,7 +206,7 @@ TEST_F(Changes, OfNamesAndOrderRerunNothing) {
   EXPECT_FALSE(fs::exists(folder_ / "out/learn/nodes/samples"));
 
   constexpr std::size_t kHead = 4;  // what is defined before it is used
-  std::vector<std::string> rows = lines(kConfig);
+  std::vector<std::string> rows = lines(kChangedConfig);
   std::vector<std::string> nodes;  // one element of several lines stays whole
   for (std::size_t i = kHead; i + 1 < rows.size(); ++i) {
     if (rows[i].starts_with("    ") || rows[i].starts_with("  </")) {
@@ -225,10 +225,10 @@ TEST_F(Changes, OfNamesAndOrderRerunNothing) {
 
 TEST_F(Changes, ThatRemoveANodeAndPutItBack) {
   EXPECT_EQ(ids(agreed("learn.xml")), kAll);
-  write(replaced(kConfig, "<evaluate id=\"baseline\"", "<evaluate if=\"false\" id=\"baseline\""));
+  write(replaced(kChangedConfig, "<evaluate id=\"baseline\"", "<evaluate if=\"false\" id=\"baseline\""));
   EXPECT_EQ(agreed("learn.xml"), Names());
   EXPECT_FALSE(fs::exists(folder_ / "out/learn/nodes/baseline"));
-  write(kConfig);
+  write(kChangedConfig);
   EXPECT_EQ(agreed("learn.xml"), Names());
   EXPECT_TRUE(fs::exists(folder_ / "out/learn/nodes/baseline/lqr/evaluation.csv"));
 }

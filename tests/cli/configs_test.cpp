@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kSource = source_folder();
+const fs::path kRepository = source_folder();
 
 std::vector<fs::path> xml_files(const fs::path& folder) {
   std::vector<fs::path> found;
@@ -28,7 +28,7 @@ Ended xmllint(const fs::path& schema, const fs::path& file) {
 }
 
 TEST(ShippedConfigs, AreValid) {
-  for (const fs::path& file : xml_files(kSource / "configs")) {
+  for (const fs::path& file : xml_files(kRepository / "configs")) {
     const Ended ended = runner("validate " + file.string());
     EXPECT_EQ(ended.status, 0) << ended.err;
     EXPECT_EQ(ended.out, "");
@@ -39,7 +39,7 @@ TEST(ShippedConfigs, PassXmllintBeforeAndAfterExpansion) {
   ASSERT_EQ(shell("command -v xmllint").status, 0) << "libxml2-utils is needed";
   const TemporaryFolder folder;
   const fs::path schema = folder.write("coppice.xsd", runner("schema").out);
-  for (const fs::path& file : xml_files(kSource / "configs")) {
+  for (const fs::path& file : xml_files(kRepository / "configs")) {
     const Ended plain = xmllint(schema, file);
     EXPECT_EQ(plain.status, 0) << plain.err;
     const Ended expanded = runner("expand " + file.string());
@@ -69,13 +69,13 @@ TEST(Schema, RefusesWhatTheProgramRefuses) {
 /// Each tests/configs/broken/<name>.xml has a <name>.txt: every line of it must be part of what is said.
 TEST(BrokenConfigs, AreRefusedWithHelpfulMessages) {
   std::size_t count = 0;
-  for (const fs::path& file : xml_files(kSource / "tests/configs/broken")) {
+  for (const fs::path& file : xml_files(kRepository / "tests/configs/broken")) {
     fs::path expected = file;
     expected.replace_extension(".txt");
     if (!fs::exists(expected)) continue;  // a part that another file includes
     SCOPED_TRACE(file.string());
     ++count;
-    const Ended ended = runner("validate " + fs::relative(file, kSource).string());
+    const Ended ended = runner("validate " + fs::relative(file, kRepository).string());
     EXPECT_EQ(ended.status, 2);
     EXPECT_EQ(ended.out, "");
     for (const std::string& line : lines(TemporaryFolder::read(expected))) {

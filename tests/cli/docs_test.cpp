@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kSource = source_folder();
+const fs::path kRoot = source_folder();
 
 struct Step {
   std::string command;
@@ -48,7 +48,7 @@ struct Home {
   TemporaryFolder folder;
   std::string program = runner_program();
   explicit Home(const fs::path& page = {}) {
-    fs::copy(kSource / "configs", folder / "configs", fs::copy_options::recursive);
+    fs::copy(kRoot / "configs", folder / "configs", fs::copy_options::recursive);
     if (page.filename() == "your-problem.md" || page.filename() == "exports.md") {
       program = contributing_program();
       fs::copy(your_problem_folder(), folder.path(), fs::copy_options::recursive);
@@ -63,8 +63,8 @@ struct Home {
 };
 
 std::vector<fs::path> pages() {
-  std::vector<fs::path> all = {kSource / "README.md"};
-  for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "docs")) {
+  std::vector<fs::path> all = {kRoot / "README.md"};
+  for (const fs::directory_entry& entry : fs::directory_iterator(kRoot / "docs")) {
     if (entry.path().extension() == ".md") all.push_back(entry.path());
   }
   return all;
@@ -101,7 +101,7 @@ TEST(Docs, ExamplesInHelpWork) {
   ASSERT_EQ(home.run("runner configs/quickstart.xml").status, 0);
   ASSERT_EQ(home.run("cp $(find out/quickstart/nodes -name '*.policy' | head -1) learned.policy").status, 0);
   std::size_t executed = 0;
-  for (const std::string& line : lines(TemporaryFolder::read(kSource / "docs/manual/commands.md"))) {
+  for (const std::string& line : lines(TemporaryFolder::read(kRoot / "docs/manual/commands.md"))) {
     if (!line.starts_with("  `")) continue;
     const std::string command = line.substr(3, line.size() - 4);
     SCOPED_TRACE(command);
@@ -113,7 +113,7 @@ TEST(Docs, ExamplesInHelpWork) {
 }
 
 TEST(Docs, ReadmeNamesEveryComponentThatUsersName) {
-  const std::string readme = TemporaryFolder::read(kSource / "README.md");
+  const std::string readme = TemporaryFolder::read(kRoot / "README.md");
   for (const std::string& interface : Catalogue::instance().interfaces()) {
     if (interface == "function" || interface == "report") continue;  // made by others
     for (const std::string& name : Catalogue::instance().names(interface)) {
@@ -132,10 +132,9 @@ TEST(Docs, ManualIsWhatTheDeclarationsSay) {
     std::sort(all.begin(), all.end());
     return all;
   };
-  EXPECT_EQ(names(written.path()), names(kSource / "docs/manual"));
+  EXPECT_EQ(names(written.path()), names(kRoot / "docs/manual"));
   for (const std::string& name : names(written.path())) {
-    EXPECT_TRUE(TemporaryFolder::read(written / name) ==
-                TemporaryFolder::read(kSource / "docs/manual" / name))
+    EXPECT_TRUE(TemporaryFolder::read(written / name) == TemporaryFolder::read(kRoot / "docs/manual" / name))
         << "docs/manual/" << name << " is out of date: run 'make docs'";
   }
 }

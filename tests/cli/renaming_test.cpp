@@ -8,7 +8,7 @@ namespace coppice {
 namespace {
 
 // Every kind of node, each id unlike any other text. Renamed, they stand in the opposite alphabetical order.
-constexpr const char* kConfig = R"(<experiment coppice="1" name="renamed" seed="5">
+constexpr const char* kRenamedConfig = R"(<experiment coppice="1" name="renamed" seed="5">
   <sweep id="sizes"><grid><param name="trees" values="2, 3"/></grid></sweep>
   <problem id="a_car"><double_integrator start="uniform"/></problem>
   <policy id="b_any"><random/></policy>
@@ -41,7 +41,7 @@ constexpr const char* kConfig = R"(<experiment coppice="1" name="renamed" seed="
   <iohprofiler id="x_log" of="u_found"/>
 </experiment>
 )";
-constexpr const char* kLogged =
+constexpr const char* kRows =
     "episode,step,s_position,s_speed,action_id,a_acceleration,reward,n_position,n_speed,terminal\n"
     "0,0,1,0,0,0.5,-1.25,1,0.025,0\n0,1,0.5,0.025,0,-1,-2,1.00125,-0.025,0\n";
 const std::vector<std::string> kIds = {"a_car",  "b_any",  "c_lqr",  "d_old",   "e_log",  "f_seen", "g_fit",
@@ -69,11 +69,11 @@ std::string renamed(std::string text) {
 class Renaming : public RunsInAFolder {
  protected:
   Renaming() {
-    folder_.write("logged.csv", kLogged);
+    folder_.write("logged.csv", kRows);
     folder_.write("old.xml",
                   R"(<experiment coppice="1" name="old"><problem id="car"><double_integrator/></problem>)"
                   R"(<policy id="p" problem="car"><linear_feedback gains="1, 1"/></policy></experiment>)");
-    folder_.write("renamed.xml", kConfig);
+    folder_.write("renamed.xml", kRenamedConfig);
     const Ended made =
         script("runner run old.xml --progress none && cp out/old/nodes/p/policy.policy old.policy");
     EXPECT_EQ(made.status, 0) << made.err;
@@ -88,7 +88,7 @@ TEST_F(Renaming, CoversEveryKindOfNode) {
     const std::string kind = line.substr(0, line.find(' '));
     if (kind.empty()) continue;
     ++kinds;
-    EXPECT_TRUE(contains(kConfig, "<" + kind + " id=")) << "the config above has no <" << kind << ">";
+    EXPECT_TRUE(contains(kRenamedConfig, "<" + kind + " id=")) << "the config above has no <" << kind << ">";
   }
   EXPECT_GE(kinds, 12U);
 }
@@ -100,7 +100,7 @@ TEST_F(Renaming, OfEveryNodeChangesNoByteButTheNamesInTables) {
   EXPECT_EQ(std::count_if(expected.begin(), expected.end(),
                           [](const auto& file) { return file.first.ends_with(".policy"); }),
             7);
-  const std::string config = renamed(kConfig);
+  const std::string config = renamed(kRenamedConfig);
   ASSERT_FALSE(contains(config, "i_best"));
   folder_.write("renamed.xml", config);
   // Only what shows names is made again: nothing depends on it.
@@ -123,7 +123,7 @@ TEST_F(Renaming, LeavesCandidatesNamedAsTheyAreCalledNow) {
   EXPECT_TRUE(before[1].starts_with(",a_car,c_lqr,,4,")) << before[1];
   EXPECT_TRUE(before[2].starts_with("2,a_car,h_tree,,4,")) << before[2];
   EXPECT_TRUE(before[4].starts_with(",,d_old,,4,")) << before[4];
-  folder_.write("renamed.xml", replaced_all(kConfig, "c_lqr", "feedback"));
+  folder_.write("renamed.xml", replaced_all(kRenamedConfig, "c_lqr", "feedback"));
   executed("renamed.xml");
   EXPECT_TRUE(selection("i_best")[1].starts_with(",a_car,feedback,,4,")) << selection("i_best")[1];
 }

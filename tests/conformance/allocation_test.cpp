@@ -41,7 +41,7 @@ std::size_t allocations_of(const Work& work) {
   return allocations - before;
 }
 
-const Draws kDraws(1, "allocation", 0);
+const Draws kAllocationDraws(1, "allocation", 0);
 
 class AllocationOfProblems : public testing::TestWithParam<std::string> {};
 
@@ -55,7 +55,7 @@ TEST_P(AllocationOfProblems, DoesNotGrowWithTheNumberOfSteps) {
     simulation.policy = policy.object.get();
     simulation.rollouts = 50;
     simulation.horizon = horizon;
-    return allocations_of([&] { problem->episodes(simulation, kDraws, serial); });
+    return allocations_of([&] { problem->episodes(simulation, kAllocationDraws, serial); });
   };
   EXPECT_EQ(run(1), run(40));
 }
@@ -77,7 +77,8 @@ TEST_P(AllocationOfPolicies, IsNoneForAnAction) {
   policy->reset(memory);
   Action action;
   EXPECT_EQ(allocations_of([&] {
-              for (std::uint64_t i = 0; i < 100; ++i) policy->act(state, memory, kDraws.scenario(i), action);
+              for (std::uint64_t i = 0; i < 100; ++i)
+                policy->act(state, memory, kAllocationDraws.scenario(i), action);
             }),
             0u);
 }
@@ -90,12 +91,13 @@ class AllocationOfApproximators : public testing::TestWithParam<std::string> {};
 TEST_P(AllocationOfApproximators, IsNoneForAPrediction) {
   Matrix x(200, 3), y(200, 2);
   for (std::size_t i = 0; i < x.rows(); ++i) {
-    for (std::uint32_t c = 0; c < 3; ++c) x(i, c) = kDraws.scenario(i).uniform("x", -1, 1, c);
+    for (std::uint32_t c = 0; c < 3; ++c) x(i, c) = kAllocationDraws.scenario(i).uniform("x", -1, 1, c);
     y(i, 0) = x(i, 0) * x(i, 1);
     y(i, 1) = x(i, 2);
   }
   Serial serial;
-  const MadeFunction function = make_example<Approximator>(GetParam())->fit({x, y, {}}, kDraws, serial);
+  const MadeFunction function =
+      make_example<Approximator>(GetParam())->fit({x, y, {}}, kAllocationDraws, serial);
   std::vector<double> in(3), out(2);
   EXPECT_EQ(allocations_of([&] {
               for (std::size_t i = 0; i < x.rows(); ++i) {

@@ -10,23 +10,23 @@
 namespace coppice {
 namespace {
 
-const Draws kDraws(2017, "golden", 0);
+const Draws kGoldenDraws(2017, "golden", 0);
 
 /// Fits `approximator` to 150 samples of two smooth functions of three inputs.
 MadeFunction fitted(const Approximator& approximator) {
   Matrix x(150, 3), y(150, 2);
-  Stream stream = kDraws.stream("samples");
+  Stream stream = kGoldenDraws.stream("samples");
   for (std::size_t i = 0; i < x.rows(); ++i) {
     for (std::size_t c = 0; c < 3; ++c) x(i, c) = stream.uniform(-1, 1);
     y(i, 0) = x(i, 0) * x(i, 1) - (x(i, 2) - 0.5) * (x(i, 2) - 0.5);
     y(i, 1) = x(i, 2) + stream.uniform(0, 0.1);
   }
   Serial serial;
-  return approximator.fit({x, y, {}}, kDraws, serial);
+  return approximator.fit({x, y, {}}, kGoldenDraws, serial);
 }
 
 void add_predictions(const Function& function, NamedValues& values) {
-  Stream stream = kDraws.stream("points");
+  Stream stream = kGoldenDraws.stream("points");
   std::vector<double> x(3), y(2);
   for (int i = 0; i < 8; ++i) {
     for (double& value : x) value = stream.uniform(-1.2, 1.2);
@@ -56,7 +56,7 @@ void add_actions(const Policy& policy, const Spaces& spaces, NamedValues& values
   policy.reset(memory);
   Action action;
   for (std::uint32_t i = 0; i < 10; ++i) {
-    const Draws draws = kDraws.fork("actions").step(i);
+    const Draws draws = kGoldenDraws.fork("actions").step(i);
     for (std::uint32_t c = 0; c < state.size(); ++c) {
       state[c] = draws.uniform("state", spaces.states[c].low, spaces.states[c].high, c);
     }
@@ -147,7 +147,7 @@ INSTANTIATE_TEST_SUITE_P(All, FunctionGoldens, testing::ValuesIn(Catalogue::inst
 class SolverGoldens : public testing::TestWithParam<std::string> {};
 
 TEST_P(SolverGoldens, LearningCurveIsTheRecordedOne) {
-  const RandomSamples samples(kDraws);
+  const RandomSamples samples(kGoldenDraws);
   const Sub<Solver> solver = make_for_golden<Solver>(GetParam());
   NamedValues values;
   const TrainingResult result = learned(*solver, samples, &values);
@@ -168,7 +168,7 @@ bool is_learned(const std::string& policy) {
 
 // Configured policies as they stand; learned ones as the first solver makes them that does.
 TEST_P(PolicyGoldens, ActionsAreTheRecordedOnes) {
-  const RandomSamples samples(kDraws);
+  const RandomSamples samples(kGoldenDraws);
   const Spaces& spaces = samples.problem->spaces();
   NamedValues values;
   if (!is_learned(GetParam())) {

@@ -10,15 +10,15 @@
 namespace coppice {
 namespace {
 
-struct Outcome {
+struct Step {
   std::array<double, 2> next;
   double reward;
   bool terminal;
 };
 
-Outcome step(const std::string& xml, std::array<double, 2> state, double acceleration) {
+Step step(const std::string& xml, std::array<double, 2> state, double acceleration) {
   const Sub<Problem> problem = make_from_xml<Problem>(xml);
-  Outcome outcome{};
+  Step outcome{};
   problem->simulator()->step(state, {0, {acceleration}}, Draws(1, "", 0), outcome.next, outcome.reward,
                              outcome.terminal);
   return outcome;
@@ -39,13 +39,13 @@ Returns simulate(const Problem& problem, const std::string& policy_xml, double d
 
 /// The linear-quadratic regulator of x' = A x + B a, A = (1 1/2; 0 1), B = (b, 1/2), cost p^2 + a^2: gains
 /// and the value at (1, 0), by iterating the Riccati equation.
-struct Regulator {
+struct CarRegulator {
   double gain_position, gain_speed, cost;
 };
 
-Regulator regulator(double b, double discount) {
+CarRegulator regulator(double b, double discount) {
   double pp = 0, pv = 0, vv = 0;  // value p^2 pp + 2 p v pv + v^2 vv
-  Regulator result{};
+  CarRegulator result{};
   for (int i = 0; i < 2000; ++i) {
     const double bp = b * pp + 0.5 * pv, bv = b * pv + 0.5 * vv;  // B' P
     const double inner = 1 + discount * (b * bp + 0.5 * bv);
@@ -62,14 +62,14 @@ Regulator regulator(double b, double discount) {
 }
 
 TEST(DoubleIntegrator, EulerStepsMoveByTheOldSpeed) {
-  const Outcome outcome = step("<double_integrator/>", {0.25, -0.5}, 0.75);
+  const Step outcome = step("<double_integrator/>", {0.25, -0.5}, 0.75);
   EXPECT_NEAR(outcome.next[0], 0.25 - 0.5 * 0.5 + 0.1125 * 0.75, 1e-15);
   EXPECT_NEAR(outcome.next[1], -0.5 + 0.5 * 0.75, 1e-15);
   EXPECT_FALSE(outcome.terminal);
 }
 
 TEST(DoubleIntegrator, ExactIntegrationIsExact) {
-  const Outcome outcome = step("<double_integrator integration=\"exact\"/>", {0.25, -0.5}, 0.75);
+  const Step outcome = step("<double_integrator integration=\"exact\"/>", {0.25, -0.5}, 0.75);
   EXPECT_NEAR(outcome.next[0], 0.25 - 0.5 * 0.5 + 0.125 * 0.75, 1e-15);
   EXPECT_NEAR(outcome.next[1], -0.5 + 0.5 * 0.75, 1e-15);
 }
@@ -82,7 +82,7 @@ TEST(DoubleIntegrator, CostIsOfTheCurrentStateAndAction) {
 TEST(DoubleIntegrator, LeavingCostsThePenaltyAloneAndEnds) {
   for (const std::array<double, 2> state :
        {std::array{0.9, 0.5}, std::array{-0.9, -0.5}, std::array{0.0, 0.8}}) {
-    const Outcome outcome = step("<double_integrator/>", state, state[1] > 0 ? 1 : -1);
+    const Step outcome = step("<double_integrator/>", state, state[1] > 0 ? 1 : -1);
     EXPECT_EQ(outcome.reward, -50);
     EXPECT_TRUE(outcome.terminal);
   }
@@ -112,7 +112,7 @@ TEST(DoubleIntegrator, TheRegulatorsCostsAreTheOptimum) {
   };
   for (const Case& c : {Case{"euler", 0.1125, 1, 3.4227}, Case{"euler", 0.1125, 0.98, 3.3457},
                         Case{"exact", 0.125, 1, 3.3723}, Case{"exact", 0.125, 0.98, 3.2975}}) {
-    const Regulator law = regulator(c.b, c.discount);
+    const CarRegulator law = regulator(c.b, c.discount);
     const Sub<Problem> problem =
         make_from_xml<Problem>(fmt::format("<double_integrator integration=\"{}\"/>", c.integration));
     const Returns returns = simulate(

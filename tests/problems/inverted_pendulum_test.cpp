@@ -8,8 +8,6 @@
 namespace coppice {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// Angular acceleration from Lagrange's equations of cart (x) and pendulum (a uniform rod of half length l =
 /// 0.5):
 ///   (M + m) x'' + m l cos theta''            = u + m l theta'^2 sin
@@ -96,17 +94,17 @@ TEST(InvertedPendulum, DefaultsAreTheThesis) {
 
 /// The linear-quadratic regulator about the upright position, with cost of the resulting state: gains of
 /// f = k1 theta + k2 theta', and the mean cost of 3000 steps under the noise, from the Riccati equation.
-struct Regulator {
+struct PendulumRegulator {
   double k1, k2, cost;
 };
-Regulator regulator(double cart) {
+PendulumRegulator regulator(double cart) {
   // One control step is linear in state and force: columns are the steps of the unit vectors, scaled down.
   const double tiny = 1e-6;
   const State2 a = euler({tiny, 0}, 0, cart), b = euler({0, tiny}, 0, cart), f = euler({0, 0}, tiny, cart);
   const double a11 = a[0] / tiny, a21 = a[1] / tiny, a12 = b[0] / tiny, a22 = b[1] / tiny;
   const double b1 = f[0] / tiny, b2 = f[1] / tiny;
   double p11 = 0, p12 = 0, p22 = 0;  // value of a state; s = p + cost of that state
-  Regulator result{};
+  PendulumRegulator result{};
   for (int i = 0; i < 5000; ++i) {
     const double s11 = p11 + 4 / (kPi * kPi), s12 = p12, s22 = p22 + 1;
     const double sb1 = s11 * b1 + s12 * b2, sb2 = s12 * b1 + s22 * b2;
@@ -126,11 +124,11 @@ Regulator regulator(double cart) {
 // By dynamic programming no policy does better than the regulator: 92.15 (8 kg) and 120.83 (6 kg).
 TEST(InvertedPendulum, TheRegulatorsCostIsTheOptimum) {
   constexpr std::size_t kEpisodes = 100;
-  const Regulator heavy = regulator(8);
+  const PendulumRegulator heavy = regulator(8);
   EXPECT_NEAR(heavy.k1, 154.7, 0.1);
   EXPECT_NEAR(heavy.k2, 46.1, 0.1);
   for (const auto& [cart, optimum] : {std::pair{8.0, 92.15}, std::pair{6.0, 120.83}}) {
-    const Regulator law = regulator(cart);
+    const PendulumRegulator law = regulator(cart);
     EXPECT_NEAR(law.cost, optimum, 0.01 * optimum) << "of the linear system";
     const Stepping step(fmt::format("<inverted_pendulum cart_mass=\"{}\"/>", cart));
     const Returns returns = step.episodes({-law.k1, -law.k2}, kEpisodes);
@@ -143,7 +141,7 @@ TEST(InvertedPendulum, TheRegulatorsCostIsTheOptimum) {
 
 // E[noise^2] / 50^2 = 1 / 75 a step, and the noise is not correlated with the force.
 TEST(InvertedPendulum, CountingTheNoiseCostsFortyMore) {
-  const Regulator law = regulator(8);
+  const PendulumRegulator law = regulator(8);
   const Stepping commanded("<inverted_pendulum/>"), noisy("<inverted_pendulum reward_force=\"noisy\"/>");
   const std::vector<double> base = commanded.episodes({-law.k1, -law.k2}, 50).total;
   std::vector<double> more = noisy.episodes({-law.k1, -law.k2}, 50).total;

@@ -7,8 +7,6 @@
 namespace coppice {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 struct Made {
   long double angle, speed, reward;
 };

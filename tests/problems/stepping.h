@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "tests/support/make.h"
 
 namespace coppice {
+
+inline constexpr double kPi = std::numbers::pi;
 
 using State2 = std::array<double, 2>;
 

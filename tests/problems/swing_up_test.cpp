@@ -8,8 +8,6 @@
 namespace coppice {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 struct Plant {
   const char* body;
   long double inertia, weight;  // weight: m g c, of the centre of mass

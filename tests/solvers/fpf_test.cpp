@@ -50,13 +50,13 @@ Lesson with_known_value() {
   return lesson;
 }
 
-const std::string kTable = "<q_value><extra_trees n_min=\"1\" trees=\"5\"/></q_value>";
+const std::string kFpfTable = "<q_value><extra_trees n_min=\"1\" trees=\"5\"/></q_value>";
 
 TEST(Fpf, LearnsToWalkOut) {
   for (const std::string leaves : {"pwc", "pwl"}) {
     const Lesson lesson;
     const TrainingResult result =
-        lesson.learn("<fpf iterations=\"6\" policy_samples=\"2000\">" + kTable +
+        lesson.learn("<fpf iterations=\"6\" policy_samples=\"2000\">" + kFpfTable +
                      "<policy><extra_trees leaves=\"" + leaves + "\"/></policy></fpf>");
     EXPECT_EQ(result.policy.resolved.name, "fitted_policy");
     EXPECT_NEAR(value_at(*result.value, 0, 1), 6.2, 1e-6);
@@ -120,7 +120,7 @@ TEST(Fpf, DependsOnItsDrawsOnly) {
 }
 
 TEST(Fpf, GoesOnAfterARestartBeforeAnyUnit) {
-  expect_resumable(Lesson(), "<fpf iterations=\"4\" policy_samples=\"300\">" + kTable + "</fpf>", 5);
+  expect_resumable(Lesson(), "<fpf iterations=\"4\" policy_samples=\"300\">" + kFpfTable + "</fpf>", 5);
   expect_resumable(with_known_value(), "<fpf policy_samples=\"300\"/>", 1);
 }
 

@@ -6,11 +6,11 @@
 namespace coppice::testing {
 namespace {
 
-const std::string kTable = "<q_value><extra_trees n_min=\"1\" trees=\"5\"/></q_value>";
+const std::string kFqiTable = "<q_value><extra_trees n_min=\"1\" trees=\"5\"/></q_value>";
 
 TEST(Fqi, LearnsToWalkOut) {
   const Lesson lesson;
-  const TrainingResult result = lesson.learn("<fqi iterations=\"6\">" + kTable + "</fqi>");
+  const TrainingResult result = lesson.learn("<fqi iterations=\"6\">" + kFqiTable + "</fqi>");
   EXPECT_EQ(result.policy.resolved.name, "greedy_policy");
   result.policy.object->prepare(lesson.problem->spaces(), nullptr);
   for (const double place : {0.0, 1.0, 2.0}) {
@@ -24,7 +24,7 @@ TEST(Fqi, LearnsToWalkOut) {
 
 TEST(Fqi, ItsPolicyLooksForActionsAsItsIterationsDo) {
   const TrainingResult result =
-      Lesson().learn("<fqi iterations=\"1\" maximization=\"exact\" max_leaves=\"7\">" + kTable + "</fqi>");
+      Lesson().learn("<fqi iterations=\"1\" maximization=\"exact\" max_leaves=\"7\">" + kFqiTable + "</fqi>");
   const auto& policy = dynamic_cast<const GreedyPolicy&>(*result.policy);
   EXPECT_EQ(policy.maximization, Maximization::Method::exact);
   EXPECT_EQ(policy.max_leaves, 7);
@@ -32,7 +32,7 @@ TEST(Fqi, ItsPolicyLooksForActionsAsItsIterationsDo) {
 }
 
 TEST(Fqi, GoesOnAfterARestartBeforeAnyIteration) {
-  expect_resumable(Lesson(), "<fqi iterations=\"5\">" + kTable + "</fqi>", 5);
+  expect_resumable(Lesson(), "<fqi iterations=\"5\">" + kFqiTable + "</fqi>", 5);
 }
 
 TEST(Fqi, TakesAnyApproximator) {

@@ -134,7 +134,7 @@ struct CollectNode : Node {
   }
 };
 
-const Component<Node, CollectNode> kComponent(
+const Component<Node, CollectNode> kCollectNode(
     "collect", "Collect transitions: episodes of a policy, or uniform samples.", "no publication");
 
 }  // namespace

@@ -52,8 +52,8 @@ struct DatasetNode : Node {
   }
 };
 
-const Component<Node, DatasetNode> kComponent("dataset", "Read transitions, or any table, from a CSV file.",
-                                              "no publication");
+const Component<Node, DatasetNode> kDatasetNode("dataset", "Read transitions, or any table, from a CSV file.",
+                                                "no publication");
 
 }  // namespace
 }  // namespace coppice

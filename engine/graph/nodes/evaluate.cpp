@@ -12,8 +12,6 @@
 namespace coppice {
 namespace {
 
-using Type = ColumnInfo::Type;
-
 /// Keeps the states of one episode, to measure how long actions for them take.
 class StateRecorder : public Recorder {
  public:
@@ -27,11 +25,12 @@ class StateRecorder : public Recorder {
 /// A row for each episode: equal scenarios of different policies are paired.
 Table returns_table(const Returns& returns) {
   Table table;
-  table.columns = {{"scenario", Type::integer, "", "Number of the scenario: the same for every policy."},
-                   {"return", Type::number, "", "Sum of rewards."},
-                   {"discounted_return", Type::number, "", "Discounted sum of rewards."},
-                   {"steps", Type::integer, "", "Steps."},
-                   {"terminal", Type::boolean, "", "1: ended in a terminal state."}};
+  table.columns = {
+      {"scenario", ColumnInfo::Type::integer, "", "Number of the scenario: the same for every policy."},
+      {"return", ColumnInfo::Type::number, "", "Sum of rewards."},
+      {"discounted_return", ColumnInfo::Type::number, "", "Discounted sum of rewards."},
+      {"steps", ColumnInfo::Type::integer, "", "Steps."},
+      {"terminal", ColumnInfo::Type::boolean, "", "1: ended in a terminal state."}};
   for (std::size_t i = 0; i < returns.total.size(); ++i) {
     table.rows.push_back({static_cast<std::int64_t>(i), returns.total[i], returns.discounted[i],
                           std::int64_t{returns.steps[i]}, std::int64_t{returns.terminal[i]}});
@@ -112,9 +111,9 @@ struct EvaluateNode : Node {
   }
 };
 
-const Component<Node, EvaluateNode> kComponent("evaluate",
-                                               "Estimate returns and costs of policies on a problem.",
-                                               "no publication", 3);
+const Component<Node, EvaluateNode> kEvaluateNode("evaluate",
+                                                  "Estimate returns and costs of policies on a problem.",
+                                                  "no publication", 3);
 
 }  // namespace
 }  // namespace coppice

@@ -74,8 +74,9 @@ struct ExportNode : Node {
   }
 };
 
-const Component<Node, ExportNode> kComponent("export", "Write a policy for programs on robots and elsewhere.",
-                                             "no publication");
+const Component<Node, ExportNode> kExportNode("export",
+                                              "Write a policy for programs on robots and elsewhere.",
+                                              "no publication");
 
 }  // namespace
 }  // namespace coppice

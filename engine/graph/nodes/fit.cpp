@@ -139,8 +139,8 @@ struct FitNode : Node {
   }
 };
 
-const Component<Node, FitNode> kComponent("fit", "Fit a function to the columns of a dataset, and score it.",
-                                          "no publication", 2);
+const Component<Node, FitNode> kFitNode("fit", "Fit a function to the columns of a dataset, and score it.",
+                                        "no publication", 2);
 
 }  // namespace
 }  // namespace coppice

@@ -21,8 +21,8 @@ struct ObjectiveNode : Node {
   }
 };
 
-const Component<Node, ObjectiveNode> kComponent("objective", "Give a function to be made large a name.",
-                                                "no publication");
+const Component<Node, ObjectiveNode> kObjectiveNode("objective", "Give a function to be made large a name.",
+                                                    "no publication");
 
 }  // namespace
 }  // namespace coppice

@@ -171,7 +171,7 @@ struct OptimizeNode : Node {
   }
 };
 
-const Component<Node, OptimizeNode> kComponent(
+const Component<Node, OptimizeNode> kOptimizeNode(
     "optimize", "Tune numbers of a configured policy, or a test function's, with a black-box optimizer.",
     "L. Hofer's thesis (2017), 2.4.1 and appendix A", 2);
 

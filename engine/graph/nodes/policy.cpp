@@ -81,9 +81,9 @@ struct PolicyNode : Node {
   }
 };
 
-const Component<Node, PolicyNode> kComponent("policy",
-                                             "Give a policy a name, configured here or read from a file.",
-                                             "no publication");
+const Component<Node, PolicyNode> kPolicyNode("policy",
+                                              "Give a policy a name, configured here or read from a file.",
+                                              "no publication");
 
 }  // namespace
 }  // namespace coppice

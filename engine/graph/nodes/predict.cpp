@@ -44,7 +44,7 @@ struct PredictNode : Node {
   }
 };
 
-const Component<Node, PredictNode> kComponent(
+const Component<Node, PredictNode> kPredictNode(
     "predict", "Predict the rows of a dataset with a function that was fitted: a dataset again.",
     "no publication");
 

@@ -20,7 +20,7 @@ struct ProblemNode : Node {
   }
 };
 
-const Component<Node, ProblemNode> kComponent("problem", "Give a problem a name.", "no publication");
+const Component<Node, ProblemNode> kProblemNode("problem", "Give a problem a name.", "no publication");
 
 }  // namespace
 }  // namespace coppice

@@ -80,7 +80,7 @@ struct SampleNode : Node {
   }
 };
 
-const Component<Node, SampleNode> kComponent(
+const Component<Node, SampleNode> kSampleNode(
     "sample", "Sample a known function, with noise: a dataset to try supervised learning on.",
     "no publication");
 

@@ -111,7 +111,7 @@ struct SelectNode : Node {
   }
 };
 
-const Component<Node, SelectNode> kComponent(
+const Component<Node, SelectNode> kSelectNode(
     "select", "Take the best of several policies, judged on scenarios of its own.", "no publication", 2);
 
 }  // namespace

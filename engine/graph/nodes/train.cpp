@@ -198,7 +198,7 @@ struct TrainNode : Node {
   }
 };
 
-const Component<Node, TrainNode> kComponent("train", "Learn a policy with a solver.", "no publication");
+const Component<Node, TrainNode> kTrainNode("train", "Learn a policy with a solver.", "no publication");
 
 }  // namespace
 }  // namespace coppice

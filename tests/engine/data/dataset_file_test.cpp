@@ -16,7 +16,7 @@ const Spaces kSpaces = {{{"position", "m", -1, 1}, {"speed", "m/s", -1, 1}},
 constexpr const char* kHeader =
     "episode,step,s_position,s_speed,action_id,a_force,a_angle,reward,n_position,n_speed,terminal\n";
 
-Dataset sample() {
+Dataset sample_dataset() {
   Dataset dataset(kSpaces, 3);
   Stream stream = Draws(1, "dataset", 0).stream("numbers");
   for (std::size_t i = 0; i < 3; ++i) {
@@ -43,7 +43,7 @@ void expect_equal(const Matrix& a, const Matrix& b) {
   }
 }
 
-std::string error_of(const std::string& content) {
+std::string dataset_error(const std::string& content) {
   const TemporaryFolder folder;
   try {
     read_dataset(folder.write("d.csv", content), kSpaces);
@@ -67,17 +67,17 @@ TEST(DatasetFile, HasTheDocumentedColumns) {
 
 TEST(DatasetFile, ReadsBackToTheSameNumbers) {
   const TemporaryFolder folder;
-  write_dataset(folder / "d.csv", sample());
+  write_dataset(folder / "d.csv", sample_dataset());
   const Dataset back = read_dataset(folder / "d.csv", kSpaces);
   EXPECT_EQ(back.spaces, kSpaces);
-  EXPECT_EQ(back.episode, sample().episode);
-  EXPECT_EQ(back.step, sample().step);
-  EXPECT_EQ(back.action_id, sample().action_id);
-  EXPECT_EQ(back.reward, sample().reward);
-  EXPECT_EQ(back.terminal, sample().terminal);
-  expect_equal(back.states, sample().states);
-  expect_equal(back.actions, sample().actions);
-  expect_equal(back.next, sample().next);
+  EXPECT_EQ(back.episode, sample_dataset().episode);
+  EXPECT_EQ(back.step, sample_dataset().step);
+  EXPECT_EQ(back.action_id, sample_dataset().action_id);
+  EXPECT_EQ(back.reward, sample_dataset().reward);
+  EXPECT_EQ(back.terminal, sample_dataset().terminal);
+  expect_equal(back.states, sample_dataset().states);
+  expect_equal(back.actions, sample_dataset().actions);
+  expect_equal(back.next, sample_dataset().next);
 }
 
 TEST(DatasetFile, ColumnsStandInAnyOrderAndOthersAreSkipped) {
@@ -96,7 +96,7 @@ TEST(DatasetFile, ColumnsStandInAnyOrderAndOthersAreSkipped) {
 }
 
 TEST(DatasetFile, MissingAndUnknownColumnsGetTheNearestName) {
-  const std::string error = error_of(
+  const std::string error = dataset_error(
       "episode,step,s_positoin,s_speed,action_id,a_force,a_angle,reward,n_position,n_speed,terminal\n");
   EXPECT_NE(error.find("the column 's_position' is missing"), std::string::npos) << error;
   EXPECT_NE(error.find("did you mean 's_positoin'"), std::string::npos) << error;
@@ -105,15 +105,15 @@ TEST(DatasetFile, MissingAndUnknownColumnsGetTheNearestName) {
 }
 
 TEST(DatasetFile, BadCellsAreLocatedAllInOnePass) {
-  const std::string error = error_of(std::string(kHeader) +
-                                     "0,0,nan,0,0,0,0,0,0,0,0\n"
-                                     "0,1.5,0,0,0,0,0,0,0,0,0\n"
-                                     "-1,2,0,0,0,0,0,0,0,0,0\n"
-                                     "0,3,0,0,2,0,0,0,0,0,0\n"
-                                     "0,4,0,0,0,,0,0,0,0,0\n"
-                                     "0,5,0,0,1,1,,0,0,0,0\n"
-                                     "0,6,0,0,0,0,0,,0,0,0\n"
-                                     "0,7,0,0,0,0,0,0,0,inf,2\n");
+  const std::string error = dataset_error(std::string(kHeader) +
+                                          "0,0,nan,0,0,0,0,0,0,0,0\n"
+                                          "0,1.5,0,0,0,0,0,0,0,0,0\n"
+                                          "-1,2,0,0,0,0,0,0,0,0,0\n"
+                                          "0,3,0,0,2,0,0,0,0,0,0\n"
+                                          "0,4,0,0,0,,0,0,0,0,0\n"
+                                          "0,5,0,0,1,1,,0,0,0,0\n"
+                                          "0,6,0,0,0,0,0,,0,0,0\n"
+                                          "0,7,0,0,0,0,0,0,0,inf,2\n");
   for (const char* expected :
        {"d.csv:2:5: error: 's_position': 'nan' is not a finite number",
         "d.csv:3:3: error: 'step': '1.5' is not a whole number from 0",
@@ -131,7 +131,7 @@ TEST(DatasetFile, BadCellsAreLocatedAllInOnePass) {
 TEST(DatasetFile, StopsAfterManyMistakes) {
   std::string content = kHeader;
   for (int i = 0; i < 1000; ++i) content += "x,0,0,0,0,0,0,0,0,0,0\n";
-  const std::string error = error_of(content);
+  const std::string error = dataset_error(content);
   std::size_t count = 0;
   for (std::size_t at = error.find("error:"); at != std::string::npos; at = error.find("error:", at + 1))
     ++count;
@@ -139,31 +139,31 @@ TEST(DatasetFile, StopsAfterManyMistakes) {
 }
 
 TEST(DatasetFile, BadFilesAreRefused) {
-  EXPECT_NE(error_of("").find("empty"), std::string::npos);
-  EXPECT_NE(error_of(std::string("\x7f"
-                                 "ELF\0\0",
-                                 6))
+  EXPECT_NE(dataset_error("").find("empty"), std::string::npos);
+  EXPECT_NE(dataset_error(std::string("\x7f"
+                                      "ELF\0\0",
+                                      6))
                 .find("binary"),
             std::string::npos);
-  EXPECT_NE(
-      error_of(std::string(kHeader) + "0,0,0\n").find("2:5: error: the row has 3 cells, the header has 11"),
-      std::string::npos);
+  EXPECT_NE(dataset_error(std::string(kHeader) + "0,0,0\n")
+                .find("2:5: error: the row has 3 cells, the header has 11"),
+            std::string::npos);
 }
 
 TEST(DatasetFile, WithoutRowsIsRefused) {
-  EXPECT_NE(error_of(kHeader).find("d.csv:1:1: error: there are no rows below the header"),
+  EXPECT_NE(dataset_error(kHeader).find("d.csv:1:1: error: there are no rows below the header"),
             std::string::npos);
 }
 
 TEST(DatasetFile, OtherSeparatorsAreNamed) {
-  EXPECT_NE(error_of("episode;step;s_position\n0;0;0\n").find("fields are separated by commas"),
+  EXPECT_NE(dataset_error("episode;step;s_position\n0;0;0\n").find("fields are separated by commas"),
             std::string::npos);
 }
 
 TEST(DatasetFile, ActionsOutsideTheirBoxesAreRefused) {
-  const std::string error = error_of(std::string(kHeader) +
-                                     "0,0,0,0,0,1.00000001,-3,0,0,0,0\n"
-                                     "0,1,0,0,0,57.3,0,0,0,0,0\n");
+  const std::string error = dataset_error(std::string(kHeader) +
+                                          "0,0,0,0,0,1.00000001,-3,0,0,0,0\n"
+                                          "0,1,0,0,0,57.3,0,0,0,0,0\n");
   EXPECT_EQ(error.find("d.csv:2"), std::string::npos) << error;
   EXPECT_NE(error.find("d.csv:3:11: error: 'a_force' is 57.3, and this action's is in [-1, 1] N"),
             std::string::npos)
@@ -171,13 +171,13 @@ TEST(DatasetFile, ActionsOutsideTheirBoxesAreRefused) {
 }
 
 TEST(DatasetFile, RowsOutOfOrderAreRefused) {
-  const std::string error = error_of(std::string(kHeader) +
-                                     "0,0,0,0,1,,,0,0,0,0\n"
-                                     "0,2,0,0,1,,,0,0,0,0\n"
-                                     "0,2,0,0,1,,,0,0,0,0\n"
-                                     "3,5,0,0,1,,,0,0,0,1\n"
-                                     "3,6,0,0,1,,,0,0,0,0\n"
-                                     "2,0,0,0,1,,,0,0,0,0\n");
+  const std::string error = dataset_error(std::string(kHeader) +
+                                          "0,0,0,0,1,,,0,0,0,0\n"
+                                          "0,2,0,0,1,,,0,0,0,0\n"
+                                          "0,2,0,0,1,,,0,0,0,0\n"
+                                          "3,5,0,0,1,,,0,0,0,1\n"
+                                          "3,6,0,0,1,,,0,0,0,0\n"
+                                          "2,0,0,0,1,,,0,0,0,0\n");
   for (const char* expected : {"d.csv:4:3: error: step 2 of episode 0 stands below step 2",
                                "d.csv:6:3: error: episode 3 goes on after a terminal step",
                                "d.csv:7:1: error: episode 2 stands below episode 3"}) {

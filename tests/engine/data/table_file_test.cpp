@@ -14,7 +14,7 @@ namespace {
 
 using Type = ColumnInfo::Type;
 
-Table sample() {
+Table sample_table() {
   Table table;
   table.columns = {{"policy", Type::text, "", "Who acts."},
                    {"time_s", Type::number, "s", "How long."},
@@ -26,7 +26,7 @@ Table sample() {
 }
 
 template <class Call>
-std::string error_of(const Call& call) {
+std::string table_error(const Call& call) {
   try {
     call();
   } catch (const ConfigError& error) {
@@ -37,14 +37,14 @@ std::string error_of(const Call& call) {
 
 TEST(TableFile, IsRfc4180WithLineFeeds) {
   const TemporaryFolder folder;
-  write_table(folder / "t.csv", sample());
+  write_table(folder / "t.csv", sample_table());
   EXPECT_EQ(TemporaryFolder::read(folder / "t.csv"),
             "policy,time_s,steps,good\n\"a, \"\"b\"\"\",0.1,3,1\n,,,0\n");
 }
 
 TEST(TableFile, SchemaStandsBeside) {
   const TemporaryFolder folder;
-  write_table(folder / "t.csv", sample());
+  write_table(folder / "t.csv", sample_table());
   const std::string schema = TemporaryFolder::read(folder / "t.schema.json");
   EXPECT_NE(schema.find("\"name\": \"time_s\""), std::string::npos);
   EXPECT_NE(schema.find("\"type\": \"boolean\""), std::string::npos);
@@ -54,7 +54,7 @@ TEST(TableFile, SchemaStandsBeside) {
 
 TEST(TableFile, TheSchemaTellsWhatIsNotReproducible) {
   const TemporaryFolder folder;
-  Table table = sample();
+  Table table = sample_table();
   write_table(folder / "t.csv", table);
   EXPECT_TRUE(is_reproducible(folder / "t.csv"));
   EXPECT_EQ(TemporaryFolder::read(folder / "t.schema.json").find("reproducible"), std::string::npos);
@@ -69,9 +69,9 @@ TEST(TableFile, TheSchemaTellsWhatIsNotReproducible) {
 
 TEST(TableFile, ReadsBackWhatWasWritten) {
   const TemporaryFolder folder;
-  write_table(folder / "t.csv", sample());
+  write_table(folder / "t.csv", sample_table());
   const Table back = read_table(folder / "t.csv");
-  EXPECT_EQ(back.rows, sample().rows);
+  EXPECT_EQ(back.rows, sample_table().rows);
   EXPECT_EQ(back.columns[1].unit, "s");
   EXPECT_EQ(back.columns[3].type, Type::boolean);
 }
@@ -106,20 +106,20 @@ TEST(TableFile, ReadsWhatOtherProgramsWrite) {
 TEST(TableFile, BadFilesGiveLocatedErrors) {
   const TemporaryFolder folder;
   const auto error = [&](const std::string& content) {
-    return error_of([&] { read_table(folder.write("bad.csv", content)); });
+    return table_error([&] { read_table(folder.write("bad.csv", content)); });
   };
   EXPECT_NE(error("").find("empty"), std::string::npos);
   EXPECT_NE(error(std::string("a\0b", 3)).find("binary"), std::string::npos);
   EXPECT_NE(error("a,b\n1\n").find("bad.csv:2:1: error: the row has 1 cells"), std::string::npos);
-  EXPECT_NE(error_of([&] { read_table(folder / "none.csv"); }).find("none.csv"), std::string::npos);
-  EXPECT_NE(error_of([&] { read_table(folder.path()); }).find("folder"), std::string::npos);
+  EXPECT_NE(table_error([&] { read_table(folder / "none.csv"); }).find("none.csv"), std::string::npos);
+  EXPECT_NE(table_error([&] { read_table(folder.path()); }).find("folder"), std::string::npos);
 }
 
 TEST(TableFile, CellsMustBeOfTheirColumnsType) {
   const TemporaryFolder folder;
-  write_table(folder / "t.csv", sample());
+  write_table(folder / "t.csv", sample_table());
   folder.write("t.csv", "policy,time_s,steps,good\na,fast,1.5,2\n");
-  const std::string error = error_of([&] { read_table(folder / "t.csv"); });
+  const std::string error = table_error([&] { read_table(folder / "t.csv"); });
   EXPECT_NE(error.find("t.csv:2:3: error: 'time_s': 'fast' is not a finite number"), std::string::npos)
       << error;
   EXPECT_NE(error.find("t.csv:2:8: error: 'steps': '1.5' is not an integer"), std::string::npos) << error;
@@ -128,16 +128,16 @@ TEST(TableFile, CellsMustBeOfTheirColumnsType) {
 
 TEST(TableFile, TheSchemaMustDescribeEveryColumn) {
   const TemporaryFolder folder;
-  write_table(folder / "t.csv", sample());
+  write_table(folder / "t.csv", sample_table());
   folder.write("t.csv", "policy,time\n");
-  const std::string error = error_of([&] { read_table(folder / "t.csv"); });
+  const std::string error = table_error([&] { read_table(folder / "t.csv"); });
   EXPECT_NE(error.find("t.csv:1:8: error: the column 'time' is not in"), std::string::npos) << error;
   EXPECT_NE(error.find("time_s"), std::string::npos) << error;
   for (const char* schema :
        {"", "{", "[]", "{\"columns\": [{\"name\": \"policy\"}]}",
         "{\"columns\": [{\"name\": \"policy\", \"type\": \"x\", \"unit\": \"\", \"doc\": \"\"}]}"}) {
     folder.write("t.schema.json", schema);
-    EXPECT_NE(error_of([&] { read_table(folder / "t.csv"); }).find("t.schema.json"), std::string::npos)
+    EXPECT_NE(table_error([&] { read_table(folder / "t.csv"); }).find("t.schema.json"), std::string::npos)
         << schema;
   }
 }
@@ -145,7 +145,7 @@ TEST(TableFile, TheSchemaMustDescribeEveryColumn) {
 TEST(TableFile, SaysWhyItCannotBeWritten) {
   const TemporaryFolder folder;
   try {
-    write_table(folder / "none" / "t.csv", sample());
+    write_table(folder / "none" / "t.csv", sample_table());
     FAIL() << "written into a folder that does not exist";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("No such file"), std::string::npos) << error.what();
@@ -154,13 +154,13 @@ TEST(TableFile, SaysWhyItCannotBeWritten) {
 
 TEST(TableFile, RowsMustHaveACellForEachColumn) {
   const TemporaryFolder folder;
-  Table table = sample();
+  Table table = sample_table();
   table.rows[0].pop_back();
   EXPECT_THROW(write_table(folder / "t.csv", table), std::logic_error);
 }
 
 TEST(Table, FindsColumnsByName) {
-  const Table table = sample();
+  const Table table = sample_table();
   EXPECT_EQ(table.column("steps"), 2u);
   EXPECT_FALSE(table.has("step"));
   try {

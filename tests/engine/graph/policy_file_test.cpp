@@ -33,7 +33,7 @@ class LookUp : public Policy {
   }
 };
 
-const Component<Policy, LookUp> kComponent("test_look_up", "Acts by a table.", "no publication");
+const Component<Policy, LookUp> kLookUp("test_look_up", "Acts by a table.", "no publication");
 
 constexpr std::size_t kChecksumOffset = 12;
 

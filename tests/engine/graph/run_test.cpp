@@ -24,7 +24,7 @@ constexpr const char* kChain =
 constexpr std::size_t kChainNodes = 13;
 
 /// Notes the names of the nodes that ran.
-class Names : public RunListener {
+class NodeNames : public RunListener {
  public:
   void finished(const NodeReport& report, const RunTotals&) override { ran.insert(report.node->name); }
   void failed(const NodeReport& report, const RunTotals&) override { failures.insert(report.node->name); }
@@ -47,7 +47,7 @@ class Run : public ::testing::Test {
 
   RunOutcome go(const std::string& nodes, RunOptions options = {}, std::vector<SweepPoints> sweeps = {}) {
     const Plan planned = plan(nodes, std::move(sweeps));
-    listener_ = Names();
+    listener_ = NodeNames();
     options.out = out_;
     if (options.threads == 0) options.threads = 2;
     if (options.listener == nullptr) options.listener = &listener_;
@@ -91,7 +91,7 @@ class Run : public ::testing::Test {
   }
 
   fs::path out_;
-  Names listener_;
+  NodeNames listener_;
 };
 
 TEST_F(Run, ComputesEveryNodeAndIsThenUpToDateWithoutTouchingAFile) {

@@ -26,21 +26,21 @@ std::vector<std::pair<std::string, std::string>> files_of(int number) {
           {"timing.csv", "wall_s\n1\n"}};
 }
 
-std::string key_of(int number) {
+std::string crash_key(int number) {
   return content_hash("key " + std::to_string(number));
 }
 
 void commit(Store& store, int number) {
-  const fs::path folder = store.begin(key_of(number));
+  const fs::path folder = store.begin(crash_key(number));
   for (const auto& [name, content] : files_of(number)) std::ofstream(folder / name) << content;
   ResultRecord record;
-  record.key = key_of(number);
+  record.key = crash_key(number);
   store.commit(folder, record);
 }
 
 /// True when the result is there; what is there must be whole.
 bool check(const StoreReader& store, int number) {
-  const std::optional<ResultRecord> record = store.find(key_of(number));
+  const std::optional<ResultRecord> record = store.find(crash_key(number));
   if (!record) return false;
   std::map<std::string, std::string> stored;
   for (const StoredFile& file : record->files) stored[file.name] = read_file(store.object(file.hash));
@@ -134,7 +134,7 @@ TEST(StoreCrash, OnlyFoldersOfDeadProcessesAreRemoved) {
   ASSERT_EQ(::pipe(ready), 0);
   const auto work_until_killed = [&] {
     Store store(folder);
-    std::ofstream(store.begin(key_of(0)) / "half.csv") << "half";
+    std::ofstream(store.begin(crash_key(0)) / "half.csv") << "half";
     if (::write(ready[1], "+", 1) != 1) ::_exit(98);
     ::pause();
   };
@@ -161,13 +161,13 @@ TEST(StoreCrash, AFullDiskFailsTheCommitAndNothingElse) {
   const pid_t child = start([&] {
     Store store(folder);
     commit(store, 0);
-    const fs::path made = store.begin(key_of(1));
+    const fs::path made = store.begin(crash_key(1));
     for (const auto& [name, content] : files_of(1)) std::ofstream(made / name) << content;
     ::signal(SIGXFSZ, SIG_IGN);
     const rlimit full{100, RLIM_INFINITY};  // the record does not fit
     ::setrlimit(RLIMIT_FSIZE, &full);
     ResultRecord record;
-    record.key = key_of(1);
+    record.key = crash_key(1);
     try {
       store.commit(made, record);
       ::_exit(1);

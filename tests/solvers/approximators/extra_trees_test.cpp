@@ -10,13 +10,13 @@
 namespace coppice {
 namespace {
 
-const Draws kDraws(2017, "extra_trees", 0);
+const Draws kExtraTreesDraws(2017, "extra_trees", 0);
 
-struct Samples {
+struct TwoOutputs {
   Matrix x, y;
   std::vector<double> weights;
-  Samples(std::size_t rows, std::size_t inputs) : x(rows, inputs), y(rows, 2) {
-    Stream stream = kDraws.stream("samples", rows);
+  TwoOutputs(std::size_t rows, std::size_t inputs) : x(rows, inputs), y(rows, 2) {
+    Stream stream = kExtraTreesDraws.stream("samples", rows);
     for (std::size_t i = 0; i < rows; ++i) {
       for (std::size_t c = 0; c < inputs; ++c) x(i, c) = stream.uniform(-1, 1);
       y(i, 0) = x(i, 0) * x(i, inputs - 1) + 0.1 * stream.normal();
@@ -25,7 +25,7 @@ struct Samples {
   }
 };
 
-MadeFunction fit(const std::string& xml, const Samples& samples, const Draws& draws = kDraws) {
+MadeFunction fit(const std::string& xml, const TwoOutputs& samples, const Draws& draws = kExtraTreesDraws) {
   Serial serial;
   return make_from_xml<Approximator>(xml)->fit({samples.x, samples.y, samples.weights}, draws, serial);
 }
@@ -35,7 +35,7 @@ const Forest& forest(const MadeFunction& function) {
 
 // Aggregation changes what is made of the trees, not the trees.
 TEST(ExtraTrees, CanTrimItsMean) {
-  const Samples samples(500, 2);
+  const TwoOutputs samples(500, 2);
   Forest mean = forest(fit("<extra_trees/>", samples));
   const Forest trimmed = forest(fit("<extra_trees aggregation=\"trimmed_mean\"/>", samples));
   EXPECT_EQ(trimmed.aggregation(), Aggregation::trimmed_mean);
@@ -48,7 +48,7 @@ TEST(ExtraTrees, CanTrimItsMean) {
 TEST(ExtraTrees, WorksOutItsParameters) {
   const auto expect_same = [](std::size_t n, std::size_t d, const std::string& automatic,
                               const std::string& explicitly) {
-    const Samples samples(n, d);
+    const TwoOutputs samples(n, d);
     const std::string trees = " trees=\"3\" ";
     EXPECT_EQ(forest(fit("<extra_trees" + trees + automatic + "/>", samples)),
               forest(fit("<extra_trees" + trees + explicitly + "/>", samples)))
@@ -62,7 +62,7 @@ TEST(ExtraTrees, WorksOutItsParameters) {
   expect_same(6, 4, "leaves=\"pwl\"", "leaves=\"pwl\" n_min=\"5\"");  // D + 1 > D floor(ln 6)
   expect_same(4, 4, "leaves=\"pwl\"", "leaves=\"pwc\"");              // N < D + 1
   expect_same(100, 2, "k=\"7\"", "k=\"2\"");
-  const Samples samples(1000, 3);
+  const TwoOutputs samples(1000, 3);
   EXPECT_EQ(forest(fit("<extra_trees/>", samples)).trees(), 25u);
   EXPECT_NE(forest(fit("<extra_trees n_min=\"7\"/>", samples)), forest(fit("<extra_trees/>", samples)));
   EXPECT_NE(forest(fit("<extra_trees k=\"2\"/>", samples)), forest(fit("<extra_trees/>", samples)));
@@ -71,7 +71,7 @@ TEST(ExtraTrees, WorksOutItsParameters) {
 }
 
 TEST(ExtraTrees, SamplesOfWeight0DoNotCount) {
-  Samples samples(40, 3);
+  TwoOutputs samples(40, 3);
   samples.weights.assign(40, 0);
   for (std::size_t i = 0; i < 3; ++i) samples.weights[i] = 1;
   EXPECT_EQ(forest(fit("<extra_trees leaves=\"pwl\"/>", samples)).leaf(), LeafModel::constant);
@@ -80,17 +80,17 @@ TEST(ExtraTrees, SamplesOfWeight0DoNotCount) {
 
 TEST(ExtraTrees, GrowsTheSameForestOnAnyNumberOfThreads) {
   for (const std::string leaves : {"pwc", "pwl"}) {
-    const Samples samples(500, 3);
+    const TwoOutputs samples(500, 3);
     Threads threads(3);
     const Sub<Approximator> approximator =
         make_from_xml<Approximator>("<extra_trees leaves=\"" + leaves + "\"/>");
-    EXPECT_EQ(forest(approximator->fit({samples.x, samples.y, {}}, kDraws, threads)),
+    EXPECT_EQ(forest(approximator->fit({samples.x, samples.y, {}}, kExtraTreesDraws, threads)),
               forest(fit("<extra_trees leaves=\"" + leaves + "\"/>", samples)));
   }
 }
 
 TEST(ExtraTrees, GrowsDifferentTreesForEachSeedTreeAndOutput) {
-  const Samples samples(200, 2);
+  const TwoOutputs samples(200, 2);
   const MadeFunction function = fit("<extra_trees trees=\"2\"/>", samples);
   EXPECT_NE(forest(function), forest(fit("<extra_trees trees=\"2\"/>", samples, Draws(1, "other", 0))));
   const auto root = [&](std::size_t output, std::size_t tree) {
@@ -103,7 +103,7 @@ TEST(ExtraTrees, GrowsDifferentTreesForEachSeedTreeAndOutput) {
 
 // Trees do not depend on how many others there are.
 TEST(ExtraTrees, ALargerForestBeginsAsASmallerOne) {
-  const Samples samples(100, 2);
+  const TwoOutputs samples(100, 2);
   EXPECT_EQ(forest(fit("<regression_tree/>", samples)).trees(), 1u);
   const MadeFunction small = fit("<regression_tree/>", samples), large = fit("<extra_trees/>", samples);
   const ForestTree a = forest(small).tree(0, 0), b = forest(large).tree(0, 0);
@@ -111,7 +111,7 @@ TEST(ExtraTrees, ALargerForestBeginsAsASmallerOne) {
 }
 
 TEST(ExtraTrees, Learns) {
-  const Samples samples(2000, 2), fresh(2001, 2);
+  const TwoOutputs samples(2000, 2), fresh(2001, 2);
   for (const auto& [xml, limit] :
        {std::pair{"<extra_trees/>", 0.15}, std::pair{"<extra_trees leaves=\"pwl\"/>", 0.125}}) {
     const MadeFunction function = fit(xml, samples);
@@ -126,10 +126,10 @@ TEST(ExtraTrees, Learns) {
 // Also where there were no samples, and for leaves with as few samples as their models have numbers.
 TEST(ExtraTrees, PredictionsLeaveTheRangeOfTheOutputsByTheMarginAtMost) {
   constexpr std::size_t kPoints = 200000;  // for each of five: a million
-  const Samples samples(3000, 3);
+  const TwoOutputs samples(3000, 3);
   const auto outputs = samples.y.column(0);
   const auto [least, most] = std::minmax_element(outputs.begin(), outputs.end());
-  Stream stream = kDraws.stream("everywhere");
+  Stream stream = kExtraTreesDraws.stream("everywhere");
   Matrix x(kPoints, 3), y(kPoints, 2);
   for (double& value : x.values()) value = stream.uniform(-2, 2);
   for (const auto& [xml, margin] :
@@ -170,7 +170,7 @@ TEST(ExtraTrees, LinearLeavesBeatAtLeastAsManyConstantOnesOnSmoothFunctions) {
       {"friedman",
        [](const double* x) { return std::sin(0.785 * (1 + x[0]) * (1 + x[1])) + 0.5 * x[2] * x[2]; }}};
   for (const auto& [name, function] : functions) {
-    Stream stream = kDraws.stream("smooth");
+    Stream stream = kExtraTreesDraws.stream("smooth");
     Matrix x(4000, 3), y(4000, 1), fresh(5000, 3);
     std::vector<double> truth(5000), point(3);
     for (double& value : x.values()) value = stream.uniform(-1, 1);
@@ -186,7 +186,7 @@ TEST(ExtraTrees, LinearLeavesBeatAtLeastAsManyConstantOnesOnSmoothFunctions) {
     Serial serial;
     const auto fitted = [&](const std::string& attributes) {
       return make_from_xml<Approximator>("<extra_trees " + attributes + "/>")
-          ->fit({x, y, {}}, kDraws, serial);
+          ->fit({x, y, {}}, kExtraTreesDraws, serial);
     };
     const MadeFunction linear = fitted("leaves=\"pwl\" n_min=\"150\"");
     int n_min = 150;
@@ -203,8 +203,8 @@ TEST(ExtraTrees, LinearLeavesBeatAtLeastAsManyConstantOnesOnSmoothFunctions) {
 TEST(ExtraTrees, LearnsFromSamplesOfAnyShape) {
   for (const std::size_t inputs : {1, 2, 5, 17, 40}) {
     for (const std::string leaves : {"pwc", "pwl"}) {
-      Samples samples(1500, inputs);
-      Stream stream = kDraws.stream("shape", inputs);
+      TwoOutputs samples(1500, inputs);
+      Stream stream = kExtraTreesDraws.stream("shape", inputs);
       const std::size_t still = inputs - 1;
       for (std::size_t i = 0; i < samples.x.rows(); ++i) {
         samples.x(i, 0) = std::round(8 * samples.x(i, 0)) / 8;  // ties
@@ -216,8 +216,8 @@ TEST(ExtraTrees, LearnsFromSamplesOfAnyShape) {
       const std::string xml = "<extra_trees trees=\"5\" leaves=\"" + leaves + "\"/>";
       const MadeFunction function = fit(xml, samples);
       Threads threads(2);
-      EXPECT_EQ(forest(make_from_xml<Approximator>(xml)->fit({samples.x, samples.y, samples.weights}, kDraws,
-                                                             threads)),
+      EXPECT_EQ(forest(make_from_xml<Approximator>(xml)->fit({samples.x, samples.y, samples.weights},
+                                                             kExtraTreesDraws, threads)),
                 forest(function));
       Matrix y(samples.x.rows(), 2);
       function->predict_batch(samples.x, y);

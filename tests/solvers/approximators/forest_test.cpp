@@ -11,8 +11,7 @@
 namespace coppice::testing {
 namespace {
 
-const Draws kDraws(2017, "forest", 0);
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const Draws kForestDraws(2017, "forest", 0);
 
 struct Grown {
   std::vector<Tree> trees;  // output after output
@@ -30,16 +29,17 @@ Grown random_forest(Stream& stream, std::size_t inputs, std::size_t outputs, Lea
   return grown;
 }
 
-std::vector<double> predict(const Forest& forest, const std::vector<double>& x) {
+std::vector<double> outputs_of(const Forest& forest, const std::vector<double>& x) {
   std::vector<double> y(forest.outputs());
   forest.predict(x, y);
   return y;
 }
 
 TEST(RoundedUp, IsTheLeastFloatThatIsNotBelow) {
-  Stream stream = kDraws.stream("rounded");
-  std::vector<double> values = {0.0,    1.0,   1e-50,     1e-310, 1e-45,   3.4e38,
-                                3.5e38, 1e300, kInfinity, 0.1,    16777217};
+  Stream stream = kForestDraws.stream("rounded");
+  std::vector<double> values = {
+      0.0, 1.0,     1e-50, 1e-310, 1e-45, 3.4e38, 3.5e38, 1e300, std::numeric_limits<double>::infinity(),
+      0.1, 16777217};
   for (int i = 0; i < 100000; ++i) values.push_back(stream.normal() * std::exp2(stream.uniform(-160, 130)));
   for (const double magnitude : values) {
     for (const double x : {magnitude, -magnitude}) {
@@ -56,7 +56,7 @@ TEST(RoundedUp, IsTheLeastFloatThatIsNotBelow) {
 // A linear forest holds the mean of its models in the mean of their ranges.
 TEST(Forest, IsTheMeanOfItsTrees) {
   for (std::uint64_t trial = 0; trial < 1000; ++trial) {
-    Stream stream = kDraws.stream("mean", trial);
+    Stream stream = kForestDraws.stream("mean", trial);
     const std::size_t inputs = 1 + stream.below(5), outputs = 1 + stream.below(3);
     const LeafModel leaf = trial % 2 == 0 ? LeafModel::constant : LeafModel::linear;
     const auto [trees, forest] = random_forest(stream, inputs, outputs, leaf);
@@ -65,12 +65,12 @@ TEST(Forest, IsTheMeanOfItsTrees) {
     for (int i = 0; i < 10; ++i) {
       std::vector<double> x;
       for (std::size_t c = 0; c < inputs; ++c) x.push_back(eighth(stream, -2, 2));
-      const std::vector<double> y = predict(forest, x);
+      const std::vector<double> y = outputs_of(forest, x);
       for (std::size_t o = 0; o < outputs; ++o) {
         Prediction sum;
         for (std::size_t t = 0; t < each; ++t) {
-          const Prediction p = testing::predict(trees[o * each + t], x);
-          ASSERT_EQ(testing::predict(unpacked(forest.tree(o, t)), x), p);
+          const Prediction p = predict(trees[o * each + t], x);
+          ASSERT_EQ(predict(unpacked(forest.tree(o, t)), x), p);
           sum = {sum.model + p.model, sum.low + p.low, sum.high + p.high};
         }
         ASSERT_EQ(y[o], sum.value() / static_cast<double>(each)) << "trial " << trial;
@@ -93,7 +93,7 @@ double trimmed_by_hand(std::vector<double> values) {
 
 TEST(Forest, IsTheTrimmedMeanOfItsTrees) {
   for (std::uint64_t trial = 0; trial < 1000; ++trial) {
-    Stream stream = kDraws.stream("trimmed", trial);
+    Stream stream = kForestDraws.stream("trimmed", trial);
     const std::size_t inputs = 1 + stream.below(5), outputs = 1 + stream.below(3);
     auto [trees, forest] =
         random_forest(stream, inputs, outputs, trial % 2 == 0 ? LeafModel::constant : LeafModel::linear);
@@ -102,11 +102,10 @@ TEST(Forest, IsTheTrimmedMeanOfItsTrees) {
     for (int i = 0; i < 10; ++i) {
       std::vector<double> x;
       for (std::size_t c = 0; c < inputs; ++c) x.push_back(eighth(stream, -2, 2));
-      const std::vector<double> y = predict(forest, x);
+      const std::vector<double> y = outputs_of(forest, x);
       for (std::size_t o = 0; o < outputs; ++o) {
         std::vector<double> values;  // each held in its range
-        for (std::size_t t = 0; t < each; ++t)
-          values.push_back(testing::predict(trees[o * each + t], x).value());
+        for (std::size_t t = 0; t < each; ++t) values.push_back(predict(trees[o * each + t], x).value());
         ASSERT_EQ(y[o], trimmed_by_hand(values)) << each << " trees, trial " << trial;
       }
     }
@@ -132,7 +131,7 @@ TEST(TrimmedMean, LeavesOutTheTenthRoundedUpButNeverAll) {
   EXPECT_EQ(of_first(25), 12);
   for (const std::size_t size : {2, 5, 9, 10, 11, 20, 25, 60, 61, 100, 250}) {
     for (const int levels : {1, 2, 8}) {  // few: many are equal
-      Stream stream = kDraws.stream("values", size);
+      Stream stream = kForestDraws.stream("values", size);
       std::vector<double> values(size);
       for (double& value : values) value = eighth(stream, 0, levels) - (size % 2 == 0 ? 1 : 0);
       const double expected = trimmed_by_hand(values);
@@ -145,28 +144,30 @@ TEST(TrimmedMean, LeavesOutTheTenthRoundedUpButNeverAll) {
 
 // A point next to a threshold, in double precision, is on the side that double precision says.
 TEST(Forest, ComparesAsInDoublePrecision) {
-  Stream stream = kDraws.stream("sides");
+  Stream stream = kForestDraws.stream("sides");
   for (int trial = 0; trial < 10000; ++trial) {
     const auto threshold = static_cast<float>(stream.normal() * std::exp2(stream.uniform(-140, 120)));
     Tree tree;
     tree.inputs = 1;
     tree.nodes = {{threshold, 0, 1}, {-1, 1, 1}, {1, 1, 2}};
     const Forest forest = forest_of({tree});
-    const double above = std::nextafter(static_cast<double>(threshold), kInfinity);
-    const double below = std::nextafter(static_cast<double>(threshold), -kInfinity);
-    ASSERT_EQ(predict(forest, {threshold}), std::vector<double>{-1});
-    ASSERT_EQ(predict(forest, {below}), std::vector<double>{-1});
-    ASSERT_EQ(predict(forest, {above}), std::vector<double>{1});
-    ASSERT_EQ(predict(forest, {kInfinity}), std::vector<double>{1});
-    ASSERT_EQ(predict(forest, {-kInfinity}), std::vector<double>{-1});
-    ASSERT_EQ(predict(forest, {-std::numeric_limits<double>::quiet_NaN()}), std::vector<double>{-1});
+    const double above =
+        std::nextafter(static_cast<double>(threshold), std::numeric_limits<double>::infinity());
+    const double below =
+        std::nextafter(static_cast<double>(threshold), -std::numeric_limits<double>::infinity());
+    ASSERT_EQ(outputs_of(forest, {threshold}), std::vector<double>{-1});
+    ASSERT_EQ(outputs_of(forest, {below}), std::vector<double>{-1});
+    ASSERT_EQ(outputs_of(forest, {above}), std::vector<double>{1});
+    ASSERT_EQ(outputs_of(forest, {std::numeric_limits<double>::infinity()}), std::vector<double>{1});
+    ASSERT_EQ(outputs_of(forest, {-std::numeric_limits<double>::infinity()}), std::vector<double>{-1});
+    ASSERT_EQ(outputs_of(forest, {-std::numeric_limits<double>::quiet_NaN()}), std::vector<double>{-1});
   }
 }
 
 TEST(Forest, PredictsABatchAsOneByOne) {
   for (const std::size_t inputs : {std::size_t{1}, std::size_t{3}, std::size_t{40}, kMaxTreeInputs}) {
     for (const LeafModel leaf : {LeafModel::constant, LeafModel::linear}) {
-      Stream stream = kDraws.stream("batch", inputs);
+      Stream stream = kForestDraws.stream("batch", inputs);
       Forest forest = random_forest(stream, inputs, 2, leaf).forest;
       for (const std::size_t rows : {0, 1, 7, 8, 9, 255, 300, 600}) {
         forest.aggregate_by(rows % 2 == 0 ? Aggregation::mean : Aggregation::trimmed_mean);
@@ -191,9 +192,9 @@ TEST(Forest, ScalesItsConstants) {
   tree.nodes = {{0.5, 0, 1}, {0.25, 1, 1}, {1, 1, 2}};
   Forest forest(1, {{1000, 8}}, LeafModel::constant);
   forest.add(pack(tree));
-  EXPECT_EQ(predict(forest, {0}), std::vector<double>{1002});
-  EXPECT_EQ(predict(forest, {1}), std::vector<double>{1008});
-  EXPECT_EQ(testing::predict(unpacked(forest.tree(0, 0)), std::vector<double>{1}).value(), 1008);
+  EXPECT_EQ(outputs_of(forest, {0}), std::vector<double>{1002});
+  EXPECT_EQ(outputs_of(forest, {1}), std::vector<double>{1008});
+  EXPECT_EQ(predict(unpacked(forest.tree(0, 0)), std::vector<double>{1}).value(), 1008);
 }
 
 // Whatever their magnitude and offset, values are packed with an error of 2^-24 of their range; numbers of
@@ -206,7 +207,7 @@ TEST(ValueRange, MakesAScaleThatKeepsItsValues) {
     const OutputScale scale = range.scale();
     return scale.offset + scale.scale * static_cast<double>(scale.packed(value));
   };
-  Stream stream = kDraws.stream("range");
+  Stream stream = kForestDraws.stream("range");
   for (int trial = 0; trial < 10000; ++trial) {
     const double unit = std::exp2(stream.uniform(-900, 900));
     const double least = (stream.normal() + (trial % 2 == 0 ? 0 : 1e5)) * unit;
@@ -224,7 +225,7 @@ TEST(ValueRange, MakesAScaleThatKeepsItsValues) {
 }
 
 TEST(Forest, CountsItsLeaves) {
-  Stream stream = kDraws.stream("leaves");
+  Stream stream = kForestDraws.stream("leaves");
   const auto [trees, forest] = random_forest(stream, 2, 2, LeafModel::constant);
   std::size_t leaves = 0;
   for (const Tree& tree : trees) leaves += leaves_of(tree).size();
@@ -233,7 +234,7 @@ TEST(Forest, CountsItsLeaves) {
 
 TEST(Forest, SurvivesAnArchive) {
   for (const LeafModel leaf : {LeafModel::constant, LeafModel::linear}) {
-    Stream stream = kDraws.stream("archive");
+    Stream stream = kForestDraws.stream("archive");
     const Forest forest = random_forest(stream, 3, 2, leaf).forest;
     Archive archive;
     forest.save(archive);
@@ -383,11 +384,11 @@ Archive first_format(LeafModel leaf) {
 TEST(Forest, ReadsTheFirstFormat) {
   const Forest constant = Forest::load(first_format(LeafModel::constant));
   EXPECT_EQ(constant.trees(), 2u);
-  EXPECT_NEAR(predict(constant, {0, 0.5})[0], 1000.2, 1e-6);
-  EXPECT_NEAR(predict(constant, {0, 0.6})[0], 1000.5, 1e-6);
+  EXPECT_NEAR(outputs_of(constant, {0, 0.5})[0], 1000.2, 1e-6);
+  EXPECT_NEAR(outputs_of(constant, {0, 0.6})[0], 1000.5, 1e-6);
   const Forest linear = Forest::load(first_format(LeafModel::linear));
-  EXPECT_EQ(predict(linear, {0.25, 0}), std::vector<double>{(7 + 8 * 0.25 + 4 + 5 * 0.25) / 2});
-  EXPECT_EQ(predict(linear, {0.25, 1}), std::vector<double>{(1 + 2 * 0.25 + 3 + 4 + 5 * 0.25 + 6) / 2});
+  EXPECT_EQ(outputs_of(linear, {0.25, 0}), std::vector<double>{(7 + 8 * 0.25 + 4 + 5 * 0.25) / 2});
+  EXPECT_EQ(outputs_of(linear, {0.25, 1}), std::vector<double>{(1 + 2 * 0.25 + 3 + 4 + 5 * 0.25 + 6) / 2});
   Archive archive;
   linear.save(archive);
   EXPECT_EQ(Forest::load(archive), linear) << "in the new format";

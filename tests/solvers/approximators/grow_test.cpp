@@ -11,18 +11,18 @@
 namespace coppice::testing {
 namespace {
 
-const Draws kDraws(2017, "grow", 0);
+const Draws kGrowDraws(2017, "grow", 0);
 
-struct Samples {
+struct GrowSamples {
   Matrix x, y;
   std::vector<double> weights;
-  Samples(std::size_t rows, std::size_t inputs) : x(rows, inputs), y(rows, 1) {}
+  GrowSamples(std::size_t rows, std::size_t inputs) : x(rows, inputs), y(rows, 1) {}
   TrainingSet set() const { return {x, y, weights}; }
 };
 
 /// Rows of noise; inputs on a grid of `levels` values (0: continuous), many of them equal.
-Samples random_samples(Stream& stream, std::size_t rows, std::size_t inputs, std::uint64_t levels) {
-  Samples samples(rows, inputs);
+GrowSamples random_samples(Stream& stream, std::size_t rows, std::size_t inputs, std::uint64_t levels) {
+  GrowSamples samples(rows, inputs);
   for (std::size_t i = 0; i < rows; ++i) {
     for (std::size_t c = 0; c < inputs; ++c) {
       samples.x(i, c) =
@@ -33,15 +33,15 @@ Samples random_samples(Stream& stream, std::size_t rows, std::size_t inputs, std
   return samples;
 }
 
-Forest grow(const Samples& samples, const Growth& growth, std::size_t trees, const Draws& draws,
+Forest grow(const GrowSamples& samples, const Growth& growth, std::size_t trees, const Draws& draws,
             const TreeKernels& kernels = tree_kernels()) {
   Serial serial;
   return grow_forest(samples.set(), growth, trees, draws, serial, kernels);
 }
 
 /// The tree of draws number `seed`.
-Tree grow_tree(const Samples& samples, const Growth& growth, std::uint64_t seed) {
-  return unpacked(grow(samples, growth, 1, kDraws.fork("tree", seed)).tree(0, 0));
+Tree grow_tree(const GrowSamples& samples, const Growth& growth, std::uint64_t seed) {
+  return unpacked(grow(samples, growth, 1, kGrowDraws.fork("tree", seed)).tree(0, 0));
 }
 
 /// The rows that a node is made of.
@@ -49,7 +49,7 @@ using Rows = std::vector<std::size_t>;
 
 /// Calls visit(node, rows) for each node of the tree.
 template <class Visit>
-void for_each_node(const Tree& tree, const Samples& samples, std::int32_t node, const Rows& rows,
+void for_each_node(const Tree& tree, const GrowSamples& samples, std::int32_t node, const Rows& rows,
                    const Visit& visit) {
   visit(node, rows);
   const TreeNode& split = tree.nodes[node];
@@ -62,7 +62,7 @@ void for_each_node(const Tree& tree, const Samples& samples, std::int32_t node, 
   for_each_node(tree, samples, split.child + 1, high, visit);
 }
 
-Rows all_rows(const Samples& samples) {
+Rows all_rows(const GrowSamples& samples) {
   Rows rows;
   for (std::size_t i = 0; i < samples.x.rows(); ++i) rows.push_back(i);
   return rows;
@@ -77,7 +77,7 @@ std::pair<double, double> order_statistics(const Matrix& x, std::size_t column, 
   return {values[n - 1], values[values.size() - n]};
 }
 
-double variance(const Samples& samples, const Rows& rows) {
+double variance(const GrowSamples& samples, const Rows& rows) {
   double mean = 0, sum = 0;
   for (const std::size_t row : rows) mean += samples.y(row, 0) / static_cast<double>(rows.size());
   for (const std::size_t row : rows) sum += std::pow(samples.y(row, 0) - mean, 2);
@@ -86,10 +86,10 @@ double variance(const Samples& samples, const Rows& rows) {
 
 TEST(Grow, KeepsTheRulesOfAlgorithm6AtEachNode) {
   for (std::uint64_t trial = 0; trial < 400; ++trial) {
-    Stream stream = kDraws.stream("rules", trial);
+    Stream stream = kGrowDraws.stream("rules", trial);
     const std::size_t inputs = 1 + stream.below(4);
     const std::uint64_t levels = stream.below(3) * 3;
-    const Samples samples = random_samples(stream, 1 + stream.below(300), inputs, levels);
+    const GrowSamples samples = random_samples(stream, 1 + stream.below(300), inputs, levels);
     Growth growth;
     growth.leaf = trial % 2 == 0 ? LeafModel::constant : LeafModel::linear;
     growth.candidates = inputs;
@@ -134,8 +134,8 @@ TEST(Grow, ThresholdsAreUniformBetweenTheOrderStatistics) {
   constexpr std::size_t kMinSamples = 20;
   enum Data { spread_out, outliers, tied };
   for (const Data data : {spread_out, outliers, tied}) {
-    Samples samples(300, 1);
-    Stream stream = kDraws.stream("thresholds", static_cast<std::uint64_t>(data));
+    GrowSamples samples(300, 1);
+    Stream stream = kGrowDraws.stream("thresholds", static_cast<std::uint64_t>(data));
     for (std::size_t i = 0; i < 300; ++i) {
       const double u = stream.uniform(-1, 1);
       samples.x(i, 0) = data == spread_out ? u * u * u : data == tied ? std::round(4 * u) : u;
@@ -157,8 +157,8 @@ TEST(Grow, ThresholdsAreUniformBetweenTheOrderStatistics) {
 
 // Output depends on input 1 alone, which wins whenever it is among the k candidates.
 TEST(Grow, TriesKDistinctDimensions) {
-  Stream stream = kDraws.stream("candidates");
-  Samples samples = random_samples(stream, 200, 4, 0);
+  Stream stream = kGrowDraws.stream("candidates");
+  GrowSamples samples = random_samples(stream, 200, 4, 0);
   for (std::size_t i = 0; i < 200; ++i) samples.y(i, 0) = samples.x(i, 1) > 0 ? 1 : 0;
   for (const std::size_t k : {1, 2, 3, 4}) {
     int wins = 0;
@@ -173,7 +173,7 @@ TEST(Grow, TriesKDistinctDimensions) {
 }
 
 TEST(Grow, StopsAtTheLeastVariance) {
-  Samples samples(4, 1);
+  GrowSamples samples(4, 1);
   for (std::size_t i = 0; i < 4; ++i) {
     samples.x(i, 0) = static_cast<double>(i);
     samples.y(i, 0) = i % 2 == 0 ? 1 : -1;  // variance 1
@@ -184,9 +184,9 @@ TEST(Grow, StopsAtTheLeastVariance) {
 
 TEST(Grow, ConstantLeavesAreMeansAndLinearOnesLeastSquares) {
   for (std::uint64_t trial = 0; trial < 60; ++trial) {
-    Stream stream = kDraws.stream("leaves", trial);
+    Stream stream = kGrowDraws.stream("leaves", trial);
     const std::size_t inputs = 1 + trial % 3;
-    Samples samples = random_samples(stream, 200, inputs, 0);
+    GrowSamples samples = random_samples(stream, 200, inputs, 0);
     for (std::size_t i = 0; i < 200; ++i) samples.weights.push_back(stream.uniform(0.1, 3));
     Growth growth{.candidates = 2, .min_samples = 15, .leaf_margin = 0.25};
     growth.leaf = trial % 2 == 0 ? LeafModel::constant : LeafModel::linear;
@@ -228,9 +228,9 @@ TEST(Grow, ConstantLeavesAreMeansAndLinearOnesLeastSquares) {
 // multiples of 1/8, so that sums in another order are the same.
 TEST(Grow, AWeightOf2IsTheSampleTwiceAndOneOf0NoSample) {
   for (std::uint64_t trial = 0; trial < 100; ++trial) {
-    Stream stream = kDraws.stream("weights", trial);
+    Stream stream = kGrowDraws.stream("weights", trial);
     std::vector<std::array<double, 4>> rows(30 + stream.below(60));  // inputs, output, weight
-    Samples weighted(rows.size(), 2);
+    GrowSamples weighted(rows.size(), 2);
     std::size_t copies = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const auto weight = static_cast<double>(i < 2 ? 1 : stream.below(3));
@@ -240,7 +240,7 @@ TEST(Grow, AWeightOf2IsTheSampleTwiceAndOneOf0NoSample) {
       weighted.weights.push_back(weight);
       copies += static_cast<std::size_t>(weight);
     }
-    Samples repeated(copies, 2);
+    GrowSamples repeated(copies, 2);
     std::size_t at = 0;
     for (const auto& row : rows) {
       for (int i = 0; i < static_cast<int>(row[3]); ++i, ++at) {
@@ -248,7 +248,7 @@ TEST(Grow, AWeightOf2IsTheSampleTwiceAndOneOf0NoSample) {
         repeated.y(at, 0) = row[2];
       }
     }
-    const auto grow = [&](const Samples& samples, std::size_t candidates) {
+    const auto grow = [&](const GrowSamples& samples, std::size_t candidates) {
       return grow_tree(samples, {.candidates = candidates}, trial);
     };
     for (const std::size_t k : {std::size_t{1}, std::size_t{2}}) {
@@ -261,7 +261,7 @@ TEST(Grow, AWeightOf2IsTheSampleTwiceAndOneOf0NoSample) {
 
 TEST(Grow, OneSampleOrEqualInputsOrEqualOutputsGiveOneLeaf) {
   for (const LeafModel leaf : {LeafModel::constant, LeafModel::linear}) {
-    Samples one(1, 3), same_inputs(20, 3), same_outputs(20, 3);
+    GrowSamples one(1, 3), same_inputs(20, 3), same_outputs(20, 3);
     one.y(0, 0) = 2.5;
     double mean = 0;
     for (std::size_t i = 0; i < 20; ++i) {
@@ -272,7 +272,7 @@ TEST(Grow, OneSampleOrEqualInputsOrEqualOutputsGiveOneLeaf) {
       same_outputs.y(i, 0) = -4.25;
     }
     const Growth growth{.leaf = leaf, .candidates = 3};
-    const auto expect_leaf = [&](const Samples& samples, double value, double tolerance) {
+    const auto expect_leaf = [&](const GrowSamples& samples, double value, double tolerance) {
       const Tree tree = grow_tree(samples, growth, 0);
       ASSERT_EQ(tree.nodes.size(), 1u);
       std::array<double, 3> x;
@@ -288,7 +288,7 @@ TEST(Grow, OneSampleOrEqualInputsOrEqualOutputsGiveOneLeaf) {
 
 // Inputs that differ in single precision, above a threshold or at it.
 TEST(Grow, SeparatesNeighbours) {
-  Samples samples(2, 1);
+  GrowSamples samples(2, 1);
   samples.x(0, 0) = 1;
   samples.x(1, 0) = std::nextafter(1.0, 2.0);
   samples.y(1, 0) = 1;
@@ -305,8 +305,8 @@ TEST(Grow, SeparatesNeighbours) {
 // own leaf.
 TEST(Grow, LearnsItsSamplesByHeart) {
   for (const std::uint64_t levels : {0, 40}) {
-    Stream stream = kDraws.stream("heart", levels);
-    const Samples samples = random_samples(stream, 3000, 2, levels);
+    Stream stream = kGrowDraws.stream("heart", levels);
+    const GrowSamples samples = random_samples(stream, 3000, 2, levels);
     for (const std::size_t k : {1, 2}) {
       const Tree tree = grow_tree(samples, {.candidates = k}, k);
       EXPECT_GT(leaves_of(tree).size(), levels == 0 ? 2990u : k == 1 ? 500u : 1000u);
@@ -327,7 +327,7 @@ TEST(Grow, LearnsItsSamplesByHeart) {
 
 // scikit-learn's rule: of the thresholds between the ends, those that leave too few are no candidates.
 TEST(Grow, RejectsThresholdsThatLeaveTooFew) {
-  Samples samples(100, 1);
+  GrowSamples samples(100, 1);
   for (std::size_t i = 0; i < 100; ++i) {
     samples.x(i, 0) = static_cast<double>(i) / 99;
     samples.y(i, 0) = i % 2 == 0 ? 1 : -1;
@@ -345,13 +345,13 @@ TEST(Grow, RejectsThresholdsThatLeaveTooFew) {
 }
 
 TEST(Grow, GivesEqualSplitsEqualChances) {
-  Samples samples(40, 3);
+  GrowSamples samples(40, 3);
   for (std::size_t i = 0; i < 40; ++i) {
     for (std::size_t c = 0; c < 3; ++c) samples.x(i, c) = i < 17 ? 0 : 1;
     samples.y(i, 0) = i < 17 ? 0.25 : 3;
   }
   for (const std::size_t rows : {std::size_t{40}, std::size_t{2}}) {
-    Samples some(rows, 3);
+    GrowSamples some(rows, 3);
     for (std::size_t i = 0; i < rows; ++i) {
       for (std::size_t c = 0; c < 3; ++c) some.x(i, c) = samples.x(rows == 2 ? 16 + i : i, c);
       some.y(i, 0) = samples.y(rows == 2 ? 16 + i : i, 0);
@@ -367,15 +367,15 @@ TEST(Grow, GivesEqualSplitsEqualChances) {
 
 // The magnitude and the offset of outputs and weights change nothing but the outputs.
 TEST(Grow, KeepsPrecisionAtAnyMagnitude) {
-  Stream stream = kDraws.stream("magnitude");
-  Samples samples = random_samples(stream, 300, 2, 0);
+  Stream stream = kGrowDraws.stream("magnitude");
+  GrowSamples samples = random_samples(stream, 300, 2, 0);
   for (std::size_t i = 0; i < 300; ++i) samples.weights.push_back(stream.uniform(0.5, 2));
   for (const LeafModel leaf : {LeafModel::constant, LeafModel::linear}) {
     const Growth growth{.leaf = leaf, .candidates = 2, .min_samples = 10};
     const Tree tree = grow_tree(samples, growth, 0);
     for (const auto& [offset, unit] :
          {std::pair{1e6, 1.0}, {0.0, 0x1p900}, {0.0, 0x1p-900}, {-1e250, 0x1p800}}) {
-      Samples other = samples;
+      GrowSamples other = samples;
       for (double& y : other.y.values()) y = offset + unit * y;
       for (double& weight : other.weights) weight *= unit;
       const Tree grown = grow_tree(other, growth, 0);
@@ -389,7 +389,7 @@ TEST(Grow, KeepsPrecisionAtAnyMagnitude) {
 }
 
 TEST(Grow, DropsWeightsThatVanishBesideTheLargest) {
-  Samples samples(4, 1);
+  GrowSamples samples(4, 1);
   for (std::size_t i = 0; i < 4; ++i) samples.x(i, 0) = samples.y(i, 0) = static_cast<double>(i);
   samples.weights = {1, 1e-300, 0, 1};
   const Tree tree = grow_tree(samples, {}, 0);
@@ -401,10 +401,10 @@ TEST(Grow, DropsWeightsThatVanishBesideTheLargest) {
 // The processor and the number of threads change no bit.
 TEST(Grow, IsTheSameOnAllProcessorsAndThreads) {
   for (std::uint64_t trial = 0; trial < 48; ++trial) {
-    Stream stream = kDraws.stream("kernels", trial);
+    Stream stream = kGrowDraws.stream("kernels", trial);
     const std::size_t rows = trial % 8 == 0 ? 9000 : 1 + stream.below(700);
     const std::size_t inputs = 1 + stream.below(12);
-    Samples samples = random_samples(stream, rows, inputs, stream.below(3) * 10);
+    GrowSamples samples = random_samples(stream, rows, inputs, stream.below(3) * 10);
     if (trial % 3 == 0) {
       for (std::size_t i = 0; i < rows; ++i) samples.weights.push_back(static_cast<double>(stream.below(4)));
       samples.weights[0] = 1.5;
@@ -416,7 +416,7 @@ TEST(Grow, IsTheSameOnAllProcessorsAndThreads) {
         growth.leaf == LeafModel::constant ? 1 + stream.below(20) : inputs + 1 + stream.below(30);
     growth.too_few = trial % 5 == 0 ? Growth::Short::reject : Growth::Short::redraw;
     growth.min_variance = trial % 7 == 0 ? 0.1 : 0;
-    const Draws draws = kDraws.fork("trial", trial);
+    const Draws draws = kGrowDraws.fork("trial", trial);
     const Forest forest = grow(samples, growth, 4, draws, portable_tree_kernels());
     for (const TreeKernels* kernels : usable_tree_kernels())
       ASSERT_EQ(grow(samples, growth, 4, draws, *kernels), forest) << kernels->name << ", trial " << trial;

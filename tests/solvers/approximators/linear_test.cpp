@@ -10,9 +10,9 @@ namespace coppice {
 namespace {
 
 /// y0 = 1 + 2 x0 - 3 x1, y1 = x1 at random places; the last sample is wrong.
-struct Samples {
+struct LinearSamples {
   Matrix x{41, 2}, y{41, 2};
-  Samples() {
+  LinearSamples() {
     Stream stream = Draws(2017, "linear", 0).stream("samples");
     for (std::size_t i = 0; i < 41; ++i) {
       x.set_row(i, std::array{stream.uniform(-1, 1), stream.uniform(3, 4)});
@@ -29,20 +29,20 @@ struct Samples {
 };
 
 TEST(LinearApproximator, FindsALinearFunction) {
-  const MadeFunction function = Samples().fit(0);
+  const MadeFunction function = LinearSamples().fit(0);
   std::array<double, 2> y{};
   function->predict(std::array{0.5, -2.0}, y);
   EXPECT_NEAR(y[0], 8, 1e-12);
   EXPECT_NEAR(y[1], -2, 1e-12);
-  Samples().fit(1)->predict(std::array{0.5, -2.0}, y);
+  LinearSamples().fit(1)->predict(std::array{0.5, -2.0}, y);
   EXPECT_GT(std::abs(y[0] - 8), 1) << "weights count";
 }
 
 TEST(LinearFunction, IsLargestInACorner) {
-  const Maximum best = Samples().fit(0)->maximize(std::vector<double>{0.5}, {{"x1", "", -1, 4}}, {});
+  const Maximum best = LinearSamples().fit(0)->maximize(std::vector<double>{0.5}, {{"x1", "", -1, 4}}, {});
   EXPECT_EQ(best.at[0], -1);
   EXPECT_NEAR(best.value, 5, 1e-12);
-  const Maximum both = Samples().fit(0)->maximize({}, {{"x0", "", -1, 4}, {"x1", "", -1, 4}}, {});
+  const Maximum both = LinearSamples().fit(0)->maximize({}, {{"x0", "", -1, 4}, {"x1", "", -1, 4}}, {});
   EXPECT_EQ(both.at, (Vec<kMaxActionSize>{4, -1}));
 }
 

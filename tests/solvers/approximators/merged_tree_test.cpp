@@ -6,11 +6,11 @@
 namespace coppice {
 namespace {
 
-const Draws kDraws(5, "merged", 0);
+const Draws kMergedDraws(5, "merged", 0);
 
-struct Samples {
-  Samples() : x(400, 2), y(400, 2) {
-    Stream stream = kDraws.stream("samples");
+struct MergedSamples {
+  MergedSamples() : x(400, 2), y(400, 2) {
+    Stream stream = kMergedDraws.stream("samples");
     for (std::size_t i = 0; i < x.rows(); ++i) {
       x(i, 0) = stream.uniform(-1, 1);
       x(i, 1) = stream.uniform(0, 3);
@@ -21,9 +21,9 @@ struct Samples {
   Matrix x, y;
 };
 
-MadeFunction fitted(const std::string& approximator, const Samples& samples) {
+MadeFunction fitted(const std::string& approximator, const MergedSamples& samples) {
   Serial serial;
-  return make_from_xml<Approximator>(approximator)->fit({samples.x, samples.y, {}}, kDraws, serial);
+  return make_from_xml<Approximator>(approximator)->fit({samples.x, samples.y, {}}, kMergedDraws, serial);
 }
 
 std::vector<double> at(const MadeFunction& function, double a, double b) {
@@ -33,7 +33,7 @@ std::vector<double> at(const MadeFunction& function, double a, double b) {
 }
 
 TEST(MergedTree, SaysWhatTheForestSays) {
-  const Samples samples;
+  const MergedSamples samples;
   for (const std::string leaves : {"pwc", "pwl"}) {
     const std::string forest = "<extra_trees trees=\"5\" n_min=\"40\" leaves=\"" + leaves + "\"/>";
     const MadeFunction many = fitted(forest, samples);
@@ -50,7 +50,7 @@ TEST(MergedTree, SaysWhatTheForestSays) {
 }
 
 TEST(MergedTree, KeepsToItsLeavesAndCanBeSaved) {
-  const Samples samples;
+  const MergedSamples samples;
   for (const std::string leaves : {"pwc", "pwl"}) {
     const MadeFunction tree = fitted(
         "<merged_tree max_leaves=\"12\"><extra_trees n_min=\"10\" leaves=\"" + leaves + "\"/></merged_tree>",
@@ -69,7 +69,7 @@ TEST(MergedTree, KeepsToItsLeavesAndCanBeSaved) {
 }
 
 TEST(MergedTree, RefusesWhatIsNoForest) {
-  const Samples samples;
+  const MergedSamples samples;
   EXPECT_THROW(fitted("<merged_tree><linear/></merged_tree>", samples), std::invalid_argument);
   EXPECT_THROW(fitted("<merged_tree><extra_trees aggregation=\"trimmed_mean\"/></merged_tree>", samples),
                std::invalid_argument);

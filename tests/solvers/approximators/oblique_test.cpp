@@ -15,9 +15,9 @@
 namespace coppice::testing {
 namespace {
 
-constexpr std::array kLeaves = {LeafModel::constant, LeafModel::linear};
+constexpr std::array kLeafModels = {LeafModel::constant, LeafModel::linear};
 
-Stream stream_of(std::uint64_t trial) {
+Stream oblique_stream(std::uint64_t trial) {
   return Draws(2017, "oblique", 0).stream("trial", trial);
 }
 
@@ -41,9 +41,10 @@ Prediction mean_at(const std::vector<Tree>& trees, std::span<const double> x) {
 // One call, a batch and the trees themselves agree to the bit, also beside thresholds.
 TEST(ObliqueForest, PredictsWhatItsTreesSay) {
   for (std::uint64_t trial = 0; trial < 1000; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = oblique_stream(trial);
     const std::size_t inputs = 1 + stream.below(5);
-    const std::vector<Tree> trees = random_trees(stream, inputs, kLeaves[trial % 2], 1 + stream.below(12));
+    const std::vector<Tree> trees =
+        random_trees(stream, inputs, kLeafModels[trial % 2], 1 + stream.below(12));
     const Forest forest = forest_of(trees);
     Matrix x(20, inputs), y(20, 1);
     std::vector<double> row(inputs);
@@ -64,7 +65,7 @@ TEST(ObliqueForest, PredictsWhatItsTreesSay) {
 }
 
 TEST(ObliqueForest, IsReadAsItWasWritten) {
-  Stream stream = stream_of(0);
+  Stream stream = oblique_stream(0);
   const Forest forest = forest_of(random_trees(stream, 3, LeafModel::linear, 5));
   Archive archive;
   forest.save(archive);
@@ -86,10 +87,10 @@ TEST(ObliqueForest, IsReadAsItWasWritten) {
 TEST(ObliqueProjection, IsTheTreeAsAFunctionOfItsLastInputs) {
   Tree projected;
   for (std::uint64_t trial = 0; trial < 10000; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = oblique_stream(trial);
     const std::size_t inputs = 1 + stream.below(4);
     const std::size_t fixed = stream.below(inputs + 1);
-    const std::vector<Tree> trees = random_trees(stream, inputs, kLeaves[trial % 2], 1);
+    const std::vector<Tree> trees = random_trees(stream, inputs, kLeafModels[trial % 2], 1);
     const Box box = random_box(stream, inputs - fixed);
     std::vector<double> x = random_point(stream, random_box(stream, fixed));
     for (double& value : x) value += trial % 3 == 0 ? stream.uniform(-1, 1) : 0;
@@ -113,7 +114,7 @@ TEST(ObliqueProjection, IsTheTreeAsAFunctionOfItsLastInputs) {
 // threshold.
 TEST(ObliqueProjection, KeepsTheBitsOfPredictions) {
   for (std::uint64_t trial = 0; trial < 2000; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = oblique_stream(trial);
     Tree tree;
     tree.inputs = 2;
     tree.directions = Directions(2);
@@ -142,10 +143,11 @@ TEST(ObliqueProjection, KeepsTheBitsOfPredictions) {
 TEST(ObliqueAverage, IsExact) {
   Tree average;
   for (std::uint64_t trial = 0; trial < 2000; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = oblique_stream(trial);
     const std::size_t inputs = 1 + stream.below(3);
-    std::vector<Tree> trees = random_trees(stream, inputs, kLeaves[trial % 2], 2);
-    if (trial % 4 < 2) trees[1] = random_trees(stream, inputs, kLeaves[trial / 4 % 2], 1)[0];  // other table
+    std::vector<Tree> trees = random_trees(stream, inputs, kLeafModels[trial % 2], 2);
+    if (trial % 4 < 2)
+      trees[1] = random_trees(stream, inputs, kLeafModels[trial / 4 % 2], 1)[0];  // other table
     const Box box = random_box(stream, inputs);
     weighted_average(trees[0], trees[1], 3, 1, box, average);
     for (int i = 0; i < 50; ++i) {
@@ -187,9 +189,9 @@ std::vector<double> places(const std::vector<Tree>& trees, const std::vector<dou
 
 TEST(ObliqueMaximum, OfOneFreeInputIsTheLargestValue) {
   for (std::uint64_t trial = 0; trial < 3000; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = oblique_stream(trial);
     const std::vector<double> prefix = random_point(stream, random_box(stream, 1 + stream.below(2)));
-    const LeafModel leaf = kLeaves[trial % 2];
+    const LeafModel leaf = kLeafModels[trial % 2];
     const std::vector<Tree> trees = random_trees(stream, prefix.size() + 1, leaf, 1 + stream.below(4));
     const Box box = random_box(stream, 1);
     const Space axis = {{"a", "", box.low[0], box.high[0]}};
@@ -213,7 +215,7 @@ TEST(ObliqueMaximum, OfOneFreeInputIsTheLargestValue) {
 }
 
 TEST(ObliqueTree, OfSeveralInputsIsNeitherPrunedNorMaximized) {
-  Stream stream = stream_of(1);
+  Stream stream = oblique_stream(1);
   Tree tree;
   tree.inputs = 2;
   tree.directions = random_directions(stream, 2, 1);
@@ -237,13 +239,13 @@ TEST(ObliqueTree, OfSeveralInputsIsNeitherPrunedNorMaximized) {
   }
 }
 
-struct Samples {
+struct WaveSamples {
   Matrix x, y;
 };
 
 /// A wave along the diagonal of the unit cube: smooth, and flat in all other directions.
-Samples rotated_wave(std::size_t inputs, std::size_t rows, std::uint64_t seed, double noise) {
-  Samples samples{Matrix(rows, inputs), Matrix(rows, 1)};
+WaveSamples rotated_wave(std::size_t inputs, std::size_t rows, std::uint64_t seed, double noise) {
+  WaveSamples samples{Matrix(rows, inputs), Matrix(rows, 1)};
   Stream stream = Draws(2017, "wave", 0).stream("samples", seed);
   for (std::size_t i = 0; i < rows; ++i) {
     double along = 0;
@@ -256,15 +258,15 @@ Samples rotated_wave(std::size_t inputs, std::size_t rows, std::uint64_t seed, d
   return samples;
 }
 
-MadeFunction fit(const std::string& xml, const Samples& samples, Parallel& parallel) {
+MadeFunction fit(const std::string& xml, const WaveSamples& samples, Parallel& parallel) {
   return make_from_xml<Approximator>(xml)->fit({samples.x, samples.y, {}}, Draws(5, "fit", 0), parallel);
 }
-MadeFunction fit(const std::string& xml, const Samples& samples) {
+MadeFunction fit(const std::string& xml, const WaveSamples& samples) {
   Serial serial;
   return fit(xml, samples, serial);
 }
 
-double test_error(const MadeFunction& function, const Samples& test) {
+double test_error(const MadeFunction& function, const WaveSamples& test) {
   Matrix predicted(test.x.rows(), 1);
   function->predict_batch(test.x, predicted);
   double sum = 0;
@@ -282,7 +284,7 @@ const Forest& forest_in(const MadeFunction& function) {
 // Leaves hold at least n_min samples, and n / n_min of them at most: about as many in both forests.
 TEST(ObliqueGrowth, FitsRotatedFunctionsBetterThanAxisAlignedSplits) {
   for (const std::size_t inputs : {2, 4}) {
-    const Samples samples = rotated_wave(inputs, 4000, 1, 0.1), test = rotated_wave(inputs, 4000, 2, 0);
+    const WaveSamples samples = rotated_wave(inputs, 4000, 1, 0.1), test = rotated_wave(inputs, 4000, 2, 0);
     for (const std::string leaves : {"leaves=\"pwc\" n_min=\"10\"", "leaves=\"pwl\" n_min=\"40\""}) {
       const MadeFunction axis = fit("<extra_trees " + leaves + "/>", samples);
       const MadeFunction oblique = fit("<extra_trees splits=\"oblique\" " + leaves + "/>", samples);
@@ -293,11 +295,11 @@ TEST(ObliqueGrowth, FitsRotatedFunctionsBetterThanAxisAlignedSplits) {
 }
 
 TEST(ObliqueGrowth, GivesTheSameBitsWithAllKernelsAndThreads) {
-  const Samples samples = rotated_wave(5, 3000, 3, 0.2);
+  const WaveSamples samples = rotated_wave(5, 3000, 3, 0.2);
   std::vector<double> weights;
   for (std::size_t i = 0; i < 3000; ++i) weights.push_back(static_cast<double>(i % 4));
   for (const bool weighted : {false, true}) {
-    for (const LeafModel leaf : kLeaves) {
+    for (const LeafModel leaf : kLeafModels) {
       Growth growth;
       growth.leaf = leaf;
       growth.candidates = 7;
@@ -319,7 +321,7 @@ TEST(ObliqueGrowth, GivesTheSameBitsWithAllKernelsAndThreads) {
 
 // Every leaf, for both kinds of splits, by sending the samples down.
 TEST(ObliqueGrowth, KeepsSamplesInEachLeaf) {
-  const Samples samples = rotated_wave(3, 1000, 4, 0.2);
+  const WaveSamples samples = rotated_wave(3, 1000, 4, 0.2);
   const Forest forest = forest_in(fit("<extra_trees trees=\"5\" splits=\"oblique\" n_min=\"7\"/>", samples));
   std::size_t oblique = 0;
   for (std::size_t t = 0; t < forest.trees(); ++t) {
@@ -337,7 +339,7 @@ TEST(ObliqueGrowth, KeepsSamplesInEachLeaf) {
 
 // Units do not matter: directions are of standardized inputs, rounding apart.
 TEST(ObliqueGrowth, DrawsDirectionsOfStandardizedInputs) {
-  Samples samples = rotated_wave(3, 2000, 5, 0);
+  WaveSamples samples = rotated_wave(3, 2000, 5, 0);
   for (std::size_t i = 0; i < samples.x.rows(); ++i) {
     samples.x(i, 1) = 1e6 + 1e3 * samples.x(i, 1);
     samples.x(i, 2) = 4;  // does not vary
@@ -363,7 +365,7 @@ TEST(ObliqueGrowth, DrawsDirectionsOfStandardizedInputs) {
 
 TEST(ObliqueGrowth, RefusesDirectionsThatTreesCannotHold) {
   EXPECT_ANY_THROW(make_from_xml<Approximator>("<extra_trees directions=\"5\"/>"));
-  const Samples samples = rotated_wave(2, 50, 6, 0);
+  const WaveSamples samples = rotated_wave(2, 50, 6, 0);
   EXPECT_THROW(fit("<extra_trees splits=\"oblique\" directions=\"254\"/>", samples), std::invalid_argument);
   EXPECT_EQ(forest_in(fit("<extra_trees splits=\"oblique\" directions=\"253\"/>", samples)).features(), 255u);
   EXPECT_TRUE(
@@ -373,7 +375,7 @@ TEST(ObliqueGrowth, RefusesDirectionsThatTreesCannotHold) {
 
 // With as many leaves as it takes, merging is exact: it need not prune.
 TEST(ObliqueTree, IsMergedWhereNothingIsPruned) {
-  const Samples samples = rotated_wave(2, 60, 8, 0.1), test = rotated_wave(2, 500, 9, 0);
+  const WaveSamples samples = rotated_wave(2, 60, 8, 0.1), test = rotated_wave(2, 500, 9, 0);
   const std::string trees = "<extra_trees trees=\"3\" splits=\"oblique\" n_min=\"10\"/>";
   const MadeFunction forest = fit(trees, samples);
   const MadeFunction merged = fit("<merged_tree max_leaves=\"100000\">" + trees + "</merged_tree>", samples);

@@ -9,7 +9,7 @@
 namespace coppice::testing {
 namespace {
 
-Stream stream_of(std::uint64_t trial) {
+Stream prune_stream(std::uint64_t trial) {
   return Draws(2017, "prune", 0).stream("trial", trial);
 }
 
@@ -121,7 +121,7 @@ void expect_greedy(Tree tree, const Box& box, double slack, std::uint64_t trial)
 
 TEST(Prune, TakesTheLeastLossOfEq29AtEachStep) {
   for (std::uint64_t trial = 0; trial < 10000; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = prune_stream(trial);
     const std::size_t inputs = 1 + stream.below(3);
     const Tree tree = random_tree(stream, {inputs, LeafModel::constant, 4});
     expect_greedy(tree, random_box(stream, inputs), 1, trial);
@@ -131,7 +131,7 @@ TEST(Prune, TakesTheLeastLossOfEq29AtEachStep) {
 
 TEST(Prune, TakesTheLeastLossOfLinearLeavesToo) {
   for (std::uint64_t trial = 0; trial < 2000; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = prune_stream(trial);
     const std::size_t inputs = 1 + trial % 3;
     const Tree tree = random_tree(stream, {inputs, LeafModel::linear, 4});
     // Along one axis the loss is exact; along the others by quadrature.
@@ -142,7 +142,7 @@ TEST(Prune, TakesTheLeastLossOfLinearLeavesToo) {
 
 TEST(Prune, InOneGoGivesWhatStepsGiveAndNeverMoreLeavesThanAsked) {
   for (std::uint64_t trial = 0; trial < 10000; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = prune_stream(trial);
     const std::size_t inputs = 1 + stream.below(4);
     const LeafModel leaf = trial % 2 == 0 ? LeafModel::constant : LeafModel::linear;
     Tree tree = random_tree(stream, {inputs, leaf, 7});
@@ -161,7 +161,7 @@ TEST(Prune, InOneGoGivesWhatStepsGiveAndNeverMoreLeavesThanAsked) {
 }
 
 TEST(Prune, KeepsATreeThatIsSmallEnough) {
-  Stream stream = stream_of(1);
+  Stream stream = prune_stream(1);
   const Tree tree = random_tree(stream, {2, LeafModel::linear, 5});
   Tree pruned = tree;
   prune(pruned, {{-1, -1}, {1, 1}}, leaves_of(tree).size());

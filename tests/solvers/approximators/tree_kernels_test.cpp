@@ -14,8 +14,7 @@
 namespace coppice {
 namespace {
 
-const Draws kDraws(2017, "kernels", 0);
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+const Draws kKernelDraws(2017, "kernels", 0);
 
 /// Columns of random numbers, a block of which is looked at; NaNs around what may be read.
 struct Block {
@@ -50,7 +49,7 @@ void for_random_blocks(Test test) {
   for (const std::size_t size : kSizes) {
     for (const std::size_t inputs : {1, 2, 3, 6, 9, 20}) {
       for (const bool weighted : {false, true}) {
-        Stream stream = kDraws.stream("block", trial++);
+        Stream stream = kKernelDraws.stream("block", trial++);
         const Block block(stream, inputs, weighted, stream.below(40), size);
         test(block, stream);
       }
@@ -68,7 +67,7 @@ auto bits_of(Number number) {
 }
 
 TEST(TreeKernels, RoundUp) {
-  Stream stream = kDraws.stream("round");
+  Stream stream = kKernelDraws.stream("round");
   for (std::size_t size = 0; size < 60; ++size) {
     std::vector<double> from(size);
     for (double& x : from) x = stream.normal() * std::exp2(stream.uniform(-160, 130));
@@ -189,7 +188,7 @@ TEST(TreeKernels, LowProducts) {
   for_random_blocks([](const Block& block, Stream& stream) {
     const SampleBlock& b = block.block;
     Candidate split = candidates_for(b, stream)[0];
-    if (stream.below(4) == 0) split.threshold = kInfinity;
+    if (stream.below(4) == 0) split.threshold = std::numeric_limits<float>::infinity();
     std::vector<float> centre(b.inputs + 1), work(product_work(b.inputs));
     for (float& c : centre) c = static_cast<float>(stream.normal());
     std::vector<double> expected(triangle(b.inputs + 2));

@@ -12,9 +12,9 @@
 namespace coppice::testing {
 namespace {
 
-constexpr std::array kLeaves = {LeafModel::constant, LeafModel::linear};
+constexpr std::array kModels = {LeafModel::constant, LeafModel::linear};
 
-Stream stream_of(std::uint64_t trial) {
+Stream operations_stream(std::uint64_t trial) {
   return Draws(2017, "tree operations", 0).stream("trial", trial);
 }
 
@@ -36,10 +36,10 @@ void expect_all_leaves_are_reached(const Tree& tree, const Box& box, std::int32_
 TEST(Projection, IsTheTreeAsAFunctionOfItsLastInputs) {
   Tree projected;
   for (std::uint64_t trial = 0; trial < 10000; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = operations_stream(trial);
     const std::size_t inputs = 1 + stream.below(4);
     const std::size_t fixed = stream.below(inputs + 1);
-    const Tree tree = random_tree(stream, {inputs, kLeaves[trial % 2], 6});
+    const Tree tree = random_tree(stream, {inputs, kModels[trial % 2], 6});
     const Box box = random_box(stream, inputs - fixed);
     const std::vector<double> prefix = random_point(stream, random_box(stream, fixed));
     const Forest forest = forest_of({tree});
@@ -60,10 +60,10 @@ TEST(WeightedAverage, IsTheWeightedAverageAtEveryPoint) {
   constexpr std::array<std::array<double, 2>, 5> kWeights = {{{1, 1}, {3, 1}, {1, 7}, {0, 4}, {0.5, 1.5}}};
   Tree average;
   for (std::uint64_t trial = 0; trial < 5000; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = operations_stream(trial);
     const std::size_t inputs = 1 + stream.below(3);
-    const Tree a = random_tree(stream, {inputs, kLeaves[stream.below(2)], 5});
-    const Tree b = random_tree(stream, {inputs, kLeaves[stream.below(2)], 5});
+    const Tree a = random_tree(stream, {inputs, kModels[stream.below(2)], 5});
+    const Tree b = random_tree(stream, {inputs, kModels[stream.below(2)], 5});
     const std::array<double, 2> weights = kWeights[stream.below(kWeights.size())];
     const double wa = weights[0], wb = weights[1];  // clang 14 captures no structured bindings
     const Box box = random_box(stream, inputs);
@@ -82,7 +82,7 @@ TEST(WeightedAverage, IsTheWeightedAverageAtEveryPoint) {
 TEST(WeightedAverage, HoldsInAllOfSpace) {
   Tree average;
   for (std::uint64_t trial = 0; trial < 500; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = operations_stream(trial);
     const Tree a = random_tree(stream, {2, LeafModel::constant, 4});
     const Tree b = random_tree(stream, {2, LeafModel::constant, 4});
     weighted_average(a, b, 1, 1, Box::everything(2), average);
@@ -97,7 +97,7 @@ TEST(WeightedAverage, HoldsInAllOfSpace) {
 TEST(WeightedAverage, OfATreeWithItselfHasItsLeaves) {
   Tree average;
   for (std::uint64_t trial = 0; trial < 1000; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = operations_stream(trial);
     const Box box = random_box(stream, 2);
     Tree tree;
     const Forest forest = forest_of({random_tree(stream, {2, LeafModel::constant, 5})});
@@ -110,9 +110,9 @@ TEST(WeightedAverage, OfATreeWithItselfHasItsLeaves) {
 TEST(Merge, PrunesEachTreeAndEachAverageInOrder) {
   Tree merged;
   for (std::uint64_t trial = 0; trial < 2000; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = operations_stream(trial);
     const std::size_t inputs = 1 + stream.below(3);
-    const LeafModel leaf = kLeaves[trial % 2];
+    const LeafModel leaf = kModels[trial % 2];
     std::vector<Tree> trees(1 + stream.below(6));
     for (Tree& tree : trees) tree = random_tree(stream, {inputs, leaf, 5});
     const Box box = random_box(stream, inputs);
@@ -138,9 +138,9 @@ TEST(Merge, PrunesEachTreeAndEachAverageInOrder) {
 TEST(Merge, IsTheForestsMeanWhereNothingIsPruned) {
   Tree merged;
   for (std::uint64_t trial = 0; trial < 1000; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = operations_stream(trial);
     std::vector<Tree> trees(1 + stream.below(5));
-    for (Tree& tree : trees) tree = random_tree(stream, {2, kLeaves[trial % 2], 3});
+    for (Tree& tree : trees) tree = random_tree(stream, {2, kModels[trial % 2], 3});
     const Box box = random_box(stream, 2);
     merge(trees, box, 100000, merged);
     for (int i = 0; i < 20; ++i) {
@@ -159,9 +159,9 @@ TEST(Merge, IsTheForestsMeanWhereNothingIsPruned) {
 
 TEST(BestLeaf, IsTheLargestValueOverAllCells) {
   for (std::uint64_t trial = 0; trial < 10000; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = operations_stream(trial);
     const std::size_t inputs = 1 + stream.below(3);
-    const Tree tree = random_tree(stream, {inputs, kLeaves[trial % 2], 5});
+    const Tree tree = random_tree(stream, {inputs, kModels[trial % 2], 5});
     const Box box = random_box(stream, inputs);
     double largest = -1e300;
     for (const Cell& cell : cells_of({&tree}, box)) {
@@ -195,8 +195,8 @@ TEST(BestLeaf, OfAConstantIsTheCentre) {
 
 TEST(DropUnused, KeepsTheTreeAndNothingElse) {
   for (std::uint64_t trial = 0; trial < 1000; ++trial) {
-    Stream stream = stream_of(trial);
-    Tree tree = random_tree(stream, {2, kLeaves[trial % 2], 6});
+    Stream stream = operations_stream(trial);
+    Tree tree = random_tree(stream, {2, kModels[trial % 2], 6});
     const Box box = random_box(stream, 2);
     prune(tree, box, 1 + stream.below(6));
     const Tree before = tree;
@@ -213,7 +213,7 @@ TEST(DropUnused, KeepsTheTreeAndNothingElse) {
 
 TEST(CountLeaves, CountsThem) {
   for (std::uint64_t trial = 0; trial < 200; ++trial) {
-    Stream stream = stream_of(trial);
+    Stream stream = operations_stream(trial);
     const Tree tree = random_tree(stream, {2, LeafModel::constant, 6});
     EXPECT_EQ(count_leaves(tree), leaves_of(tree).size());
   }

@@ -10,7 +10,7 @@
 namespace coppice {
 namespace {
 
-SearchTask square(std::int64_t budget, bool noisy) {
+SearchTask cooling_task(std::int64_t budget, bool noisy) {
   SearchTask task;
   task.box = {{"a", "", 0, 10}, {"b", "", -1, 1}};
   task.guess = {5, 0.5};
@@ -24,7 +24,7 @@ SearchTask square(std::int64_t budget, bool noisy) {
 // 10 times a uniform number of [-1, 1], then moved into the box. Accepted with probability exp(-loss / T).
 TEST(SimulatedAnnealing, EachStepIsTheOneComputedByHand) {
   const auto optimizer = make_from_xml<Optimizer>(R"(<simulated_annealing temperature="2"/>)");
-  const SearchTask task = square(10, false);
+  const SearchTask task = cooling_task(10, false);
   const auto search = optimizer->start(task);
   const double values[] = {-4, -3, -5, -4.5, -9, -2.5, -2.6, -2.7, -2.4, -8};
   std::vector<double> memory = task.guess;
@@ -60,7 +60,7 @@ TEST(SimulatedAnnealing, EachStepIsTheOneComputedByHand) {
 
 TEST(SimulatedAnnealing, FindsItsTemperatureFromTheFirstValues) {
   const auto optimizer = make_from_xml<Optimizer>("<simulated_annealing/>");
-  const auto search = optimizer->start(square(40, false));  // a twentieth: 2 values
+  const auto search = optimizer->start(cooling_task(40, false));  // a twentieth: 2 values
   for (const double value : {1.0, 3.0}) {
     search->ask(1);
     EXPECT_EQ(search->measures()[0], 0);
@@ -71,7 +71,7 @@ TEST(SimulatedAnnealing, FindsItsTemperatureFromTheFirstValues) {
 
 TEST(SimulatedAnnealing, EvaluatesBothPointsOnTheSameScenarioUnderNoise) {
   const auto optimizer = make_from_xml<Optimizer>("<simulated_annealing/>");
-  const SearchTask task = square(101, true);
+  const SearchTask task = cooling_task(101, true);
   const auto search = optimizer->start(task);
   const SearchRecord record =
       run_search(*search, task, 1, [](std::span<const double> x, std::uint64_t scenario) {

@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-const Spaces kSpaces = {{{"angle", "rad", -kPi, kPi, true}, {"speed", "rad/s", -8, 8}},
-                        {{"turn", {{"torque", "N*m", -2, 2}}}}};
+const Spaces kPendulumSpaces = {{{"angle", "rad", -kPi, kPi, true}, {"speed", "rad/s", -8, 8}},
+                                {{"turn", {{"torque", "N*m", -2, 2}}}}};
 
 double torque(const std::string& xml, std::vector<double> state) {
   const Sub<Policy> policy = make_from_xml<Policy>(xml);
-  policy.object->prepare(kSpaces, nullptr);
+  policy.object->prepare(kPendulumSpaces, nullptr);
   Action action;
   policy->act(state, {}, Draws(1, "test", 0), action);
   return action.values[0];
@@ -43,10 +43,10 @@ TEST(EnergySwingUp, HoldsByLinearFeedbackNearTheTop) {
 
 TEST(EnergySwingUp, RefusesWhatIsNoPendulum) {
   const Sub<Policy> policy = make_from_xml<Policy>(kLaw);
-  Spaces spaces = kSpaces;
+  Spaces spaces = kPendulumSpaces;
   spaces.states.push_back({"cart", "m", -1, 1});
   EXPECT_THROW(policy.object->prepare(spaces, nullptr), std::invalid_argument);
-  spaces = kSpaces;
+  spaces = kPendulumSpaces;
   spaces.actions.push_back(spaces.actions[0]);
   EXPECT_THROW(policy.object->prepare(spaces, nullptr), std::invalid_argument);
   EXPECT_THROW(torque("<energy_swing_up stiffness=\"15\" energy_gain=\"1\" gains=\"3\"/>", {0, 0}),

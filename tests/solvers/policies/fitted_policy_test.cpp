@@ -9,8 +9,8 @@
 namespace coppice {
 namespace {
 
-const Spaces kSpaces = {{{"x", "m", -1, 1}, {"v", "m/s", -1, 1}},
-                        {{"push", {{"force", "N", -2, 2}, {"turn", "rad", 0, 1}}}}};
+const Spaces kFittedSpaces = {{{"x", "m", -1, 1}, {"v", "m/s", -1, 1}},
+                              {{"push", {{"force", "N", -2, 2}, {"turn", "rad", 0, 1}}}}};
 
 /// force = 1 + 2 x - v, turn = x.
 Sub<Policy> linear() {
@@ -33,7 +33,7 @@ std::string refusal(const Spaces& spaces) {
 
 TEST(FittedPolicy, IsItsFunctionMovedIntoTheBox) {
   const Sub<Policy> policy = linear();
-  policy.object->prepare(kSpaces, nullptr);
+  policy.object->prepare(kFittedSpaces, nullptr);
   Action action{7, {1, 2, 3}};
   policy->act(std::array{0.25, 0.5}, {}, Draws(1, "", 0), action);
   EXPECT_EQ(action, (Action{0, {1.0, 0.25}}));
@@ -44,18 +44,18 @@ TEST(FittedPolicy, IsItsFunctionMovedIntoTheBox) {
 }
 
 TEST(FittedPolicy, SaysWhatTheProblemExpects) {
-  Spaces spaces = kSpaces;
+  Spaces spaces = kFittedSpaces;
   spaces.actions.push_back({"wait", {}});
   EXPECT_EQ(refusal(spaces), "<fitted_policy> chooses the parameters of one action; the problem has 2");
-  spaces = kSpaces;
+  spaces = kFittedSpaces;
   spaces.states.pop_back();
   EXPECT_EQ(
       refusal(spaces),
       "<fitted_policy>: its function leads from 2 to 2 numbers; the problem's state has 1 and its action 2");
-  spaces = kSpaces;
+  spaces = kFittedSpaces;
   spaces.actions[0].axes.pop_back();
   EXPECT_NE(refusal(spaces), "");
-  EXPECT_EQ(refusal(kSpaces), "");
+  EXPECT_EQ(refusal(kFittedSpaces), "");
   EXPECT_THROW(make_from_xml<Policy>("<fitted_policy/>"), ConfigError);
 }
 

@@ -9,7 +9,8 @@
 namespace coppice {
 namespace {
 
-const Spaces kSpaces = {{{"x", "m", -1, 1}}, {{"push", {{"force", "N", -2, 2}, {"turn", "rad", 0, 1}}}}};
+const Spaces kGreedySpaces = {{{"x", "m", -1, 1}},
+                              {{"push", {{"force", "N", -2, 2}, {"turn", "rad", 0, 1}}}}};
 
 /// Two trees over x, force and turn: one rises by 1 above force = 1, the other by 2 below force = 1.5 where
 /// x > 0; both by 4 above turn = 1/2.
@@ -37,7 +38,7 @@ Action act(const Policy& policy, double x) {
 TEST(GreedyPolicy, TakesTheCentreOfTheBestLeaf) {
   for (const std::string how : {"maximization=\"exact\"", "maximization=\"merge\" max_leaves=\"50\""}) {
     const Sub<Policy> policy = forest(how);
-    policy.object->prepare(kSpaces, nullptr);
+    policy.object->prepare(kGreedySpaces, nullptr);
     EXPECT_EQ(act(*policy, 0.5), (Action{0, {1.25, 0.75}})) << how;  // (5 + 6) / 2
     EXPECT_EQ(act(*policy, -0.5), (Action{0, {1.5, 0.75}})) << how;  // (5 + 0) / 2
   }
@@ -45,7 +46,7 @@ TEST(GreedyPolicy, TakesTheCentreOfTheBestLeaf) {
 
 TEST(GreedyPolicy, PrunesToItsLeaves) {
   const Sub<Policy> policy = forest("maximization=\"merge\" max_leaves=\"1\"");
-  policy.object->prepare(kSpaces, nullptr);
+  policy.object->prepare(kGreedySpaces, nullptr);
   EXPECT_EQ(act(*policy, 0.5), (Action{0, {0.0, 0.5}})) << "one leaf, the whole box";
 }
 
@@ -58,11 +59,11 @@ TEST(GreedyPolicy, SaysWhatTheProblemExpects) {
     }
     return "";
   };
-  EXPECT_EQ(refusal(kSpaces), "");
-  Spaces spaces = kSpaces;
+  EXPECT_EQ(refusal(kGreedySpaces), "");
+  Spaces spaces = kGreedySpaces;
   spaces.actions.push_back({"wait", {}});
   EXPECT_EQ(refusal(spaces), "<greedy_policy> chooses the parameters of one action; the problem has 2");
-  spaces = kSpaces;
+  spaces = kGreedySpaces;
   spaces.states.push_back({"v", "m/s", -1, 1});
   EXPECT_EQ(refusal(spaces),
             "<greedy_policy>: its value function has 3 inputs; the problem's state and action have 4");

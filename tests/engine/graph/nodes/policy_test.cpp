@@ -9,14 +9,14 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Element problem_element(const std::string& id = "car") {
+Element car_element(const std::string& id = "car") {
   return element("problem", {{"id", id}}, {element("double_integrator", {})});
 }
-const Element kRegulator = element("linear_feedback", {{"gains", "1, 2"}});
+const Element kFeedback = element("linear_feedback", {{"gains", "1, 2"}});
 
 TEST(PolicyNode, IsADefinitionUnlessItHasAProblemOrAFile) {
-  EXPECT_TRUE(make_node(element("policy", {{"id", "p"}}, {kRegulator}))->definition());
-  EXPECT_FALSE(make_node(element("policy", {{"id", "p"}, {"problem", "car"}}, {kRegulator}))->definition());
+  EXPECT_TRUE(make_node(element("policy", {{"id", "p"}}, {kFeedback}))->definition());
+  EXPECT_FALSE(make_node(element("policy", {{"id", "p"}, {"problem", "car"}}, {kFeedback}))->definition());
 }
 
 TEST(PolicyNode, TakesAPolicyOrAFile) {
@@ -28,15 +28,15 @@ TEST(PolicyNode, TakesAPolicyOrAFile) {
   const std::string file = (context.folder() / "some.policy").string();
   write_file(file, "anything");
   EXPECT_THAT(error_of([&] {
-                make_node(element("policy", {{"id", "p"}, {"file", file}}, {kRegulator}));
+                make_node(element("policy", {{"id", "p"}, {"file", file}}, {kFeedback}));
               }),
               HasSubstr("either a policy inside"));
 }
 
 TEST(PolicyNode, WritesAFileThatOtherNodesRead) {
   FakeContext context;
-  context.given["problem"] = {input(problem_element())};
-  const Element described = element("policy", {{"id", "p"}, {"problem", "car"}}, {kRegulator});
+  context.given["problem"] = {input(car_element())};
+  const Element described = element("policy", {{"id", "p"}, {"problem", "car"}}, {kFeedback});
   const Sub<Node> node = make_node(described);
   node->check(context);
   node->run(context);
@@ -50,7 +50,7 @@ TEST(PolicyNode, WritesAFileThatOtherNodesRead) {
   FakeContext elsewhere;
   make_node(from_file)->check(elsewhere);
   make_node(from_file)->run(elsewhere);
-  const auto problem = load_problem(input(problem_element()));
+  const auto problem = load_problem(input(car_element()));
   const MadePolicy policy = load_policy(input(from_file, elsewhere.folder()), *problem);
   Action action;
   policy->act(std::vector<double>{0.1, -0.2}, {}, Draws(1, "test", 0), action);
@@ -65,14 +65,14 @@ TEST(PolicyNode, RefusesAFileForAnotherProblem) {
   file.component = element("random", {});
   const std::string path = (context.folder() / "tank.policy").string();
   write_policy_file(path, file);
-  context.given["problem"] = {input(problem_element())};
+  context.given["problem"] = {input(car_element())};
   const auto node = make_node(element("policy", {{"id", "p"}, {"problem", "car"}, {"file", path}}));
   EXPECT_THAT(error_of([&] { node->check(context); }), HasSubstr("1 axes for the state, the problem 2"));
 }
 
 TEST(PolicyNode, RefusesAPolicyThatDoesNotFitItsProblem) {
   FakeContext context;
-  context.given["problem"] = {input(problem_element())};
+  context.given["problem"] = {input(car_element())};
   const auto node = make_node(
       element("policy", {{"id", "p"}, {"problem", "car"}}, {element("linear_feedback", {{"gains", "1"}})}));
   EXPECT_THAT(error_of([&] { node->check(context); }), HasSubstr("gains has 1"));
@@ -102,7 +102,7 @@ TEST(LoadPolicy, GivesNothingWhileALearnedPolicyIsNotThereYet) {
   InputNode learned;
   learned.kind = "train";
   learned.element = shared(element("train", {{"id", "t"}}));
-  EXPECT_FALSE(load_policy(learned, *load_problem(input(problem_element()))));
+  EXPECT_FALSE(load_policy(learned, *load_problem(input(car_element()))));
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ Sub<Node> selection(const std::string& criterion = "return") {
 }
 
 /// Feedback laws of the double integrator; the second is the optimum.
-void give(FakeContext& context, const std::vector<std::string>& gains) {
+void give_laws(FakeContext& context, const std::vector<std::string>& gains) {
   context.given["problem"] = {input(element("problem", {{"id", "car"}}, {element("double_integrator", {})}))};
   for (const std::string& law : gains) {
     context.given["policies"].push_back(
@@ -31,7 +31,7 @@ void give(FakeContext& context, const std::vector<std::string>& gains) {
 
 TEST(Select, TakesTheBestAndRecordsAll) {
   FakeContext context;
-  give(context, {"0.1, 0.1", "0.687, 1.177", "2, 1"});
+  give_laws(context, {"0.1, 0.1", "0.687, 1.177", "2, 1"});
   const Sub<Node> node = selection();
   node->check(context);
   node->run(context);
@@ -51,7 +51,7 @@ TEST(Select, TakesTheBestAndRecordsAll) {
 
 TEST(Select, RefusesPoliciesMadeWithItsOwnDraws) {
   FakeContext context;
-  give(context, {"1, 1"});
+  give_laws(context, {"1, 1"});
   context.given["policies"][0].streams = {"train 0", context.stream()};
   EXPECT_THAT(error_of([&] { selection()->check(context); }), HasSubstr("would judge it"));
 }
