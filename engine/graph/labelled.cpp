@@ -11,8 +11,6 @@
 namespace coppice {
 namespace {
 
-using Type = ColumnInfo::Type;
-
 struct Label {
   ColumnInfo column;
   Cell cell;
@@ -23,14 +21,14 @@ Label label(std::string name, const std::string& value, const std::string& unit,
   const char* end = value.data() + value.size();
   if (const auto read = std::from_chars(value.data(), end, integer);
       read.ptr == end && read.ec == std::errc() && std::to_string(integer) == value) {
-    return {{std::move(name), Type::integer, unit, std::move(doc)}, integer};
+    return {{std::move(name), ColumnInfo::Type::integer, unit, std::move(doc)}, integer};
   }
   double number = 0;
   if (const auto read = std::from_chars(value.data(), end, number);
       read.ptr == end && read.ec == std::errc() && std::isfinite(number)) {
-    return {{std::move(name), Type::number, unit, std::move(doc)}, number};
+    return {{std::move(name), ColumnInfo::Type::number, unit, std::move(doc)}, number};
   }
-  return {{std::move(name), Type::text, "", std::move(doc)}, value};
+  return {{std::move(name), ColumnInfo::Type::text, "", std::move(doc)}, value};
 }
 
 /// The labels without those that repeat: a sweep over the problem says the same as the problem.
@@ -65,7 +63,8 @@ Table label_columns(const Table& table, const NodeLabels& node) {
                            unit == node.units.end() ? "" : unit->second,
                            sweep ? "Sweep column '" + name + "'." : "Id of the " + name + "."));
   }
-  labels.push_back({{"replicate", Type::integer, "", "Number of the independent repetition, from 0."}, {}});
+  labels.push_back(
+      {{"replicate", ColumnInfo::Type::integer, "", "Number of the independent repetition, from 0."}, {}});
   if (node.replicate) labels.back().cell = std::int64_t{*node.replicate};
 
   Table result;
@@ -131,9 +130,9 @@ Table join_rows(const std::vector<Table>& tables) {
         for (std::vector<Cell>& row : joined.rows) row.emplace_back();
       }
       places.push_back(joined.column(column.name));
-      Type& type = joined.columns[places.back()].type;
-      const bool both_numbers = type != Type::text && column.type != Type::text;
-      if (type != column.type) type = both_numbers ? Type::number : Type::text;
+      ColumnInfo::Type& type = joined.columns[places.back()].type;
+      const bool both_numbers = type != ColumnInfo::Type::text && column.type != ColumnInfo::Type::text;
+      if (type != column.type) type = both_numbers ? ColumnInfo::Type::number : ColumnInfo::Type::text;
     }
     for (const std::vector<Cell>& row : table.rows) {
       std::vector<Cell>& wide = joined.rows.emplace_back(joined.columns.size());

@@ -66,9 +66,9 @@ std::optional<Interval> confidence_interval(const MeanEstimate& estimate, double
 }
 
 double p_value(const MeanEstimate& estimate) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (!(estimate.degrees > 0) || !std::isfinite(estimate.variance)) return kNone;
-  if (!(estimate.variance > 0)) return estimate.mean == 0 ? kNone : 0;
+  constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+  if (!(estimate.degrees > 0) || !std::isfinite(estimate.variance)) return kUndefined;
+  if (!(estimate.variance > 0)) return estimate.mean == 0 ? kUndefined : 0;
   const double t = estimate.mean / std::sqrt(estimate.variance);
   return std::max(student_t_two_sided(t, estimate.degrees),
                   student_t_two_sided(symmetrized(t, skew_of(estimate)), estimate.degrees));

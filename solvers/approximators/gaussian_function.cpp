@@ -71,9 +71,9 @@ Maximum GaussianFunction::maximize(std::span<const double> prefix, const Space& 
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const Probe& a, const Probe& b) { return a.value > b.value; });
-  constexpr std::size_t kStarts = 3;
+  constexpr std::size_t kClimbs = 3;
   Probe best = found.front();
-  for (std::size_t s = 0; n > 0 && s < std::min(kStarts, found.size()); ++s) {
+  for (std::size_t s = 0; n > 0 && s < std::min(kClimbs, found.size()); ++s) {
     const double reached = climb(hill, low, high, found[s].at, 40);
     if (reached > best.value) best = {reached, found[s].at};
   }
