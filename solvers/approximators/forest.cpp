@@ -7,14 +7,15 @@
 #include <cassert>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "solvers/approximators/forest_descent.h"
 
 namespace coppice {
 namespace {
 
-// As many descents as registers hold.
-constexpr std::size_t kTreesAbreast = 9;
+// More than registers hold: what a descent waits for is memory, and processors see far ahead.
+constexpr std::size_t kTreesAbreast = 25;
 using Leaves = std::array<std::uint64_t, kTreesAbreast>;
 
 template <std::size_t kSize>
@@ -25,16 +26,16 @@ void find_leaves(const ForestNode* nodes, const std::uint32_t* roots, const floa
   std::copy(at.begin(), at.end(), leaves.begin());
 }
 
-constexpr std::array kFindLeaves = {find_leaves<1>, find_leaves<2>, find_leaves<3>,
-                                    find_leaves<4>, find_leaves<5>, find_leaves<6>,
-                                    find_leaves<7>, find_leaves<8>, find_leaves<9>};
-static_assert(kFindLeaves.size() == kTreesAbreast);
+template <std::size_t... kSizes>
+constexpr auto finders(std::index_sequence<kSizes...>) {
+  return std::array{find_leaves<1 + kSizes>...};
+}
+constexpr auto kFindLeaves = finders(std::make_index_sequence<kTreesAbreast>());
 
 // Calls visit(leaf) for the leaf of x, which a NaN follows, in each of `count` trees, in their order.
 template <class Visit>
 void for_each_leaf(const ForestNode* nodes, std::span<const std::uint32_t> roots, std::span<const float> x,
                    const Visit& visit) {
-  if (roots.size() == 1) return visit(descend_alone(nodes, roots[0], x));
   Leaves leaves;
   std::size_t groups = (roots.size() + kTreesAbreast - 1) / kTreesAbreast;
   for (std::size_t first = 0; groups > 0; --groups) {  // of about equal size
@@ -129,6 +130,7 @@ double Forest::linear_value(std::uint32_t leaf, const double* x) const {
 
 void Forest::predict(std::span<const double> x, std::span<double> y) const {
   assert(x.size() == inputs_ && y.size() == outputs());
+  if (trees() == 1) return predict_alone(x, y);
   std::array<float, kMaxTreeInputs + 1> rounded;
   std::transform(x.begin(), x.end(), rounded.begin(), rounded_up);
   for (std::size_t j = 0; j < directions_.size(); ++j)
@@ -138,6 +140,22 @@ void Forest::predict(std::span<const double> x, std::span<double> y) const {
   for (std::size_t output = 0; output < outputs(); ++output) {
     y[output] = aggregation_ == Aggregation::mean ? mean(output, x.data(), inputs)
                                                   : trimmed(output, x.data(), inputs);
+  }
+}
+
+void Forest::predict_alone(std::span<const double> x, std::span<double> y) const {
+  std::array<std::uint32_t, kMaxTreeInputs> keys;
+  std::transform(x.begin(), x.end(), keys.begin(), key_of);
+  for (std::size_t j = 0; j < directions_.size(); ++j)
+    keys[inputs_ + j] = key_of(directions_.value(j, x.data()));
+  for (std::size_t output = 0; output < outputs(); ++output) {
+    const std::uint32_t leaf = descend_alone(nodes_.data(), roots_[output], keys.data());
+    if (leaf_ == LeafModel::constant) {
+      y[output] = scales_[output].offset + scales_[output].scale * nodes_[leaf].value;
+    } else {
+      const double* range = models_.data() + nodes_[leaf].row() * model_width(inputs_) + inputs_ + 1;
+      y[output] = std::clamp(linear_value(leaf, x.data()), range[0], range[1]) + 0.0;  // -0 is 0, as in a sum
+    }
   }
 }
 

@@ -150,6 +150,7 @@ class Forest {
                                   LeafModel leaf);
   double linear_value(std::uint32_t leaf, const double* x) const;
   std::span<const std::uint32_t> roots_of(std::size_t output) const;
+  void predict_alone(std::span<const double> x, std::span<double> y) const;  // a tree an output
   double mean(std::size_t output, const double* x, std::span<const float> rounded) const;
   double trimmed(std::size_t output, const double* x, std::span<const float> rounded) const;
   void check() const;

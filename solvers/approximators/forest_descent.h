@@ -15,11 +15,11 @@ namespace coppice {
 /// one descent after the other would wait for each; in a leaf a descent stays.
 template <std::size_t kSize, class Input>
 inline void descend(const ForestNode* nodes, std::array<std::uint64_t, kSize>& places, const Input& input) {
-  std::array<std::uint64_t, kSize> at = places;  // in registers
+  std::array<std::uint64_t, kSize> at = places;  // in registers, or nearly
   std::uint32_t moved;
   do {
     moved = 0;
-#pragma GCC unroll 16
+#pragma GCC unroll 32
     for (std::size_t i = 0; i < kSize; ++i) {
       const ForestNode& node = nodes[at[i]];
       const std::uint32_t step = node.ahead() + (input(i, node.feature()) > node.value ? 1 : 0);
@@ -36,17 +36,20 @@ inline std::uint32_t ordered(std::uint32_t bits) {
   return bits ^ (sign | 0x80000000U);
 }
 
-/// The leaf of rounded inputs in a single tree. One descent is as slow as what each of its steps waits for:
-/// so both children are loaded while it is seen which one it is, whole numbers are compared, which is faster,
-/// and the choice is no branch, which would be guessed wrongly half the time.
-inline std::uint32_t descend_alone(const ForestNode* nodes, std::uint32_t root, std::span<const float> x) {
-  std::array<std::uint32_t, kMaxTreeInputs> keys;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    // -0 and 0 are equal, and NaN is not above anything.
-    keys[i] = x[i] == 0      ? ordered(0x80000000U)
-              : x[i] == x[i] ? ordered(std::bit_cast<std::uint32_t>(x[i]))
-                             : 0U;
-  }
+/// An input as descend_alone compares it: rounded_up(x), in order. Zeros are equal, and NaN is not above
+/// anything.
+inline std::uint32_t key_of(double x) {
+  const auto nearest = static_cast<float>(x);
+  const auto bits = std::bit_cast<std::uint32_t>(nearest);
+  const std::uint32_t is_below = static_cast<double>(nearest) < x ? 1 : 0;
+  const std::uint32_t up = bits + (bits >> 31 == 0 ? is_below : 0U - is_below);
+  return x != x ? 0U : ordered((up << 1) == 0 ? 0x80000000U : up);
+}
+
+/// The leaf of a point in a single tree; `keys` are those of its features. One descent is as slow as what
+/// each of its steps waits for: so both children are loaded while it is seen which one it is, whole numbers
+/// are compared, which is faster, and the choice is no branch, which would be guessed wrongly half the time.
+inline std::uint32_t descend_alone(const ForestNode* nodes, std::uint32_t root, const std::uint32_t* keys) {
   const auto load = [](const ForestNode* node) {
     std::uint64_t bits;  // the value, then the link
     std::memcpy(&bits, node, sizeof bits);
