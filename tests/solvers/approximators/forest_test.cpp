@@ -21,7 +21,7 @@ struct Grown {
 Grown random_forest(Stream& stream, std::size_t inputs, std::size_t outputs, LeafModel leaf) {
   Grown grown;
   grown.forest = Forest(inputs, std::vector<OutputScale>(outputs), leaf);
-  grown.trees.resize(outputs * (1 + stream.below(20)));
+  grown.trees.resize(outputs * (1 + stream.below(60)));
   for (Tree& tree : grown.trees) {
     tree = random_tree(stream, {inputs, leaf, 5});
     grown.forest.add(pack(tree));
