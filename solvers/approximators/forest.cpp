@@ -1,6 +1,8 @@
 #include "solvers/approximators/forest.h"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -44,6 +46,16 @@ void for_each_leaf(const ForestNode* nodes, std::span<const std::uint32_t> roots
     for (std::size_t i = 0; i < size; ++i) visit(static_cast<std::uint32_t>(leaves[i]));
     first += size;
   }
+}
+
+// For memory that is not in use yet: it is filled with fewer page faults, and addresses in it are found
+// faster.
+void prefer_large_pages(void* memory, std::size_t bytes) {
+  constexpr std::size_t kWorthIt = std::size_t{16} << 20;
+  if (bytes < kWorthIt) return;
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  const std::size_t before = (page - reinterpret_cast<std::uintptr_t>(memory) % page) % page;
+  madvise(static_cast<std::byte*>(memory) + before, (bytes - before) / page * page, MADV_HUGEPAGE);  // a wish
 }
 
 }  // namespace
@@ -96,6 +108,7 @@ void Forest::reserve(std::size_t trees, std::size_t nodes, std::size_t models) {
   roots_.reserve(trees);
   nodes_.reserve(nodes);
   models_.reserve(models);
+  prefer_large_pages(nodes_.data(), nodes_.capacity() * sizeof(ForestNode));
 }
 
 // Models are stored in the order of their leaves.
@@ -105,8 +118,12 @@ void Forest::add(const PackedTree& tree) {
   }
   const std::size_t width = model_width(inputs_);
   roots_.push_back(static_cast<std::uint32_t>(nodes_.size()));
+  if (leaf_ == LeafModel::constant) {
+    nodes_.insert(nodes_.end(), tree.nodes.begin(), tree.nodes.end());
+    return;
+  }
   for (const ForestNode& node : tree.nodes) {
-    if (leaf_ == LeafModel::constant || node.ahead() != 0) {
+    if (node.ahead() != 0) {
       nodes_.push_back(node);
       continue;
     }

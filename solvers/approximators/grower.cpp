@@ -35,7 +35,7 @@ Grower::Grower(const TrainingColumns& samples, const Growth& growth, const TreeK
   sample_.resize(samples.inputs() + 1);
 }
 
-PackedTree Grower::grow(std::size_t output, Stream stream) {
+const PackedTree& Grower::grow(std::size_t output, Stream stream) {
   stream_ = stream;
   has_bits_ = false;
   reset_features();
@@ -50,7 +50,7 @@ PackedTree Grower::grow(std::size_t output, Stream stream) {
     tasks_.pop_back();
     make_node(task);
   }
-  return tree_;  // a copy, of just the size
+  return tree_;
 }
 
 void Grower::reset_features() {

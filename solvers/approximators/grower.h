@@ -14,7 +14,8 @@ class Grower {
  public:
   Grower(const TrainingColumns& samples, const Growth& growth, const TreeKernels& kernels);
 
-  PackedTree grow(std::size_t output, Stream stream);
+  /// Valid until the next call.
+  const PackedTree& grow(std::size_t output, Stream stream);
 
  private:
   // One node that is still to be made: its samples, rows [begin, end) of the columns.
