@@ -12,7 +12,6 @@ namespace coppice::config {
 namespace {
 
 constexpr std::size_t kMany = 1000;
-constexpr double kLongestRange = 1e6;
 
 constexpr auto kFunctions = std::to_array<FunctionInfo>({
     {"abs", 1, 1, "abs(x)"},
@@ -133,8 +132,8 @@ Value range(const ExpressionNode& call, const std::vector<Value>& arguments) {
                 fmt::format("range never gets from {} to {}", arguments[0].to_text(), arguments[1].to_text()),
                 "the step must have the sign of to - from");
   }
-  if (steps >= kLongestRange)
-    throw wrong(call, 2, fmt::format("a range has more than {} items", kLongestRange));
+  if (steps >= static_cast<double>(kMostItems))
+    throw wrong(call, 2, fmt::format("a range has more than {} items", kMostItems));
   List items;
   for (double i = 0; i <= steps; ++i) {
     items.push_back(Value::quantity({shortened(from.value + i * step.value), from.dimension}));

@@ -133,6 +133,8 @@ Value apply_operator(const ExpressionNode& node, const Value& left, const Value&
   if (left.as_quantity() && right.as_quantity()) return arithmetic(node, left, right);
   if (op == "+" && left.as_text() && right.as_text()) return Value::text(*left.as_text() + *right.as_text());
   if (op == "+" && left.as_list() && right.as_list()) {
+    if (left.as_list()->size() + right.as_list()->size() > kMostItems)
+      throw node.error(fmt::format("a list grows beyond {} items", kMostItems));
     List items = *left.as_list();
     items.insert(items.end(), right.as_list()->begin(), right.as_list()->end());
     return Value::list(std::move(items));

@@ -43,6 +43,9 @@ struct ExpressionNode {
 
 using Tree = std::unique_ptr<const ExpressionNode>;
 
+/// Longer lists are errors.
+inline constexpr std::size_t kMostItems = 1'000'000;
+
 /// A function of the language; a call outside these limits is a parse error.
 struct FunctionInfo {
   std::string_view name;

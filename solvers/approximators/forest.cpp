@@ -34,7 +34,7 @@ constexpr auto finders(std::index_sequence<kSizes...>) {
 }
 constexpr auto kFindLeaves = finders(std::make_index_sequence<kTreesAbreast>());
 
-// Calls visit(leaf) for the leaf of x, which a NaN follows, in each of `count` trees, in their order.
+// Calls visit(leaf) for the leaf of x, which a NaN follows, in each tree, in their order.
 template <class Visit>
 void for_each_leaf(const ForestNode* nodes, std::span<const std::uint32_t> roots, std::span<const float> x,
                    const Visit& visit) {

@@ -138,6 +138,7 @@ class Forest {
   /// The same for rows of x, to rows of y; faster. Allocates as little.
   void predict_batch(const Matrix& x, Matrix& y) const;
 
+  /// Throws std::runtime_error for numbers that are not finite, which outputs near the largest can lead to.
   void save(Archive& archive) const;
   /// Throws std::runtime_error for anything but disjoint trees of finite numbers.
   static Forest load(const Archive& archive);
@@ -154,6 +155,7 @@ class Forest {
   double mean(std::size_t output, const double* x, std::span<const float> rounded) const;
   double trimmed(std::size_t output, const double* x, std::span<const float> rounded) const;
   void check() const;
+  void check_numbers() const;
 
   std::size_t inputs_ = 0;
   LeafModel leaf_ = LeafModel::constant;

@@ -72,6 +72,7 @@ ForestNode converted(const FirstFormat& old, std::size_t i, std::size_t inputs, 
 }  // namespace
 
 void Forest::save(Archive& archive) const {
+  check_numbers();  // what cannot be read again is not written
   std::vector<double> scales;
   for (const OutputScale& scale : scales_) scales.insert(scales.end(), {scale.offset, scale.scale});
   std::vector<float> values(nodes_.size());
@@ -186,10 +187,18 @@ Forest Forest::load_first_format(const Archive& archive, std::size_t inputs, std
   return forest;
 }
 
-void Forest::check() const {
+void Forest::check_numbers() const {
   for (const OutputScale& scale : scales_) {
     if (!std::isfinite(scale.offset) || !std::isfinite(scale.scale)) invalid("a scale that is not finite");
   }
+  for (const ForestNode& node : nodes_) {
+    if (!std::isfinite(node.value)) invalid("a value that is not finite");
+  }
+  if (!all_finite(models_)) invalid("a leaf model that is not finite");
+}
+
+void Forest::check() const {
+  check_numbers();
   const std::size_t size = nodes_.size();
   std::vector<std::int16_t> depth(size, 0);
   walk(nodes_, roots_, outputs(), [&](std::size_t node, std::int64_t parent, std::size_t) {
@@ -197,14 +206,12 @@ void Forest::check() const {
     if (depth[node] > kMaxTreeDepth) invalid("too deep");
   });
   for (const ForestNode& node : nodes_) {
-    if (!std::isfinite(node.value)) invalid("a value that is not finite");
     if ((node.feature() == features()) != (node.ahead() == 0))
       invalid("a leaf with children, or a split without");
     if (node.feature() > features()) invalid("a split of no input");
   }
   const std::size_t rows = leaf_ == LeafModel::linear ? leaves() : 0;
   if (models_.size() != rows * model_width(inputs_)) invalid("size of its leaf models");
-  if (!all_finite(models_)) invalid("a leaf model that is not finite");
   for (std::size_t row = 0; row < rows; ++row) {
     const double* range = models_.data() + row * model_width(inputs_) + inputs_ + 1;
     if (range[0] > range[1]) invalid("a leaf model with an empty range");

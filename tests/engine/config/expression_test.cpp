@@ -254,6 +254,7 @@ TEST(Expression, BuildsRangesWithBothEnds) {
   EXPECT_EQ(mistake("range(5, 1)").message, "range never gets from 5 to 1");
   EXPECT_EQ(mistake("range(1, 5, 0)").marked, "0");
   EXPECT_EQ(mistake("range(0, 1, 1e-9)").message, "a range has more than 1000000 items");
+  EXPECT_EQ(mistake("range(1, 6e5) + range(1, 6e5)").message, "a list grows beyond 1000000 items");
   EXPECT_EQ(mistake("range(0 m, 1 m)").message, "range over numbers with a unit needs a step");
 }
 

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <functional>
 #include <limits>
 #include <stdexcept>
 
+#include "solvers/approximators/forest_descent.h"
 #include "tests/solvers/approximators/random_trees.h"
 
 namespace coppice::testing {
@@ -48,9 +50,22 @@ TEST(RoundedUp, IsTheLeastFloatThatIsNotBelow) {
       const float below = std::nextafter(up, -std::numeric_limits<float>::infinity());
       ASSERT_TRUE(static_cast<double>(below) < x || up == below) << x;
       ASSERT_FALSE(up == 0 && std::signbit(up)) << x;
+      // Above what is below it, and not above itself, whatever the sign of a zero.
+      const auto key = [](float number) { return ordered(std::bit_cast<std::uint32_t>(number)); };
+      ASSERT_LE(key_of(x), key(up)) << x;
+      ASSERT_TRUE(key_of(x) <= key(-up) || up != 0) << x;
+      ASSERT_TRUE(key_of(x) > key(below) || below == up) << x;
     }
   }
   EXPECT_TRUE(std::isnan(rounded_up(std::numeric_limits<double>::quiet_NaN())));
+  EXPECT_EQ(key_of(std::numeric_limits<double>::quiet_NaN()), 0u);
+}
+
+TEST(Forest, IsNotSavedWithNumbersThatCannotBeRead) {
+  Archive archive;
+  Forest forest(1, {OutputScale{0, std::numeric_limits<double>::infinity()}}, LeafModel::constant);
+  forest.add({{ForestNode::leaf(1, 1)}, {}});
+  EXPECT_THROW(forest.save(archive), std::runtime_error);
 }
 
 // A linear forest holds the mean of its models in the mean of their ranges.
