@@ -147,6 +147,27 @@ std::shared_ptr<void> detail::make_component(std::string_view interface, const E
   return nullptr;
 }
 
+void detail::report_broken(const std::invalid_argument& broken, const Element& element,
+                           Diagnostics& diagnostics) {
+  const auto report = [&](const BrokenRule& rule) {
+    const Place& place = place_of(element.find(rule.parameter), element);
+    const std::string component = fmt::format("<{}>: ", element.name);
+    try {
+      std::rethrow_exception(rule.why);
+    } catch (const ConfigError& mistakes) {
+      for (const Diagnostic& mistake : mistakes.diagnostics())
+        diagnostics.error(place, component + mistake.message, mistake.hint);
+    } catch (const std::exception& why) {
+      diagnostics.error(place, component + why.what());
+    }
+  };
+  if (const auto* several = dynamic_cast<const BrokenRules*>(&broken)) {
+    for (const BrokenRule& rule : several->all()) report(rule);
+  } else {
+    report({"", std::make_exception_ptr(broken)});
+  }
+}
+
 void detail::report_unknown_component(std::string_view interface, const Element& element,
                                       Diagnostics& diagnostics) {
   const Catalogue& catalogue = Catalogue::instance();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "registry/parameters.h"
+#include "registry/rules.h"
 
 namespace coppice {
 
@@ -26,6 +27,11 @@ struct ComponentInfo {
   std::function<std::shared_ptr<void>(const Element&, Element* resolved, Diagnostics&)> make;
   std::string example{};  ///< XML; empty: one is made from the parameters
 };
+
+namespace detail {
+/// Reports the rules that the component `element` breaks.
+void report_broken(const std::invalid_argument& broken, const Element& element, Diagnostics& diagnostics);
+}  // namespace detail
 
 /// All registered components.
 class Catalogue {
@@ -55,8 +61,9 @@ struct Adapter;
 
 /// Registers T as a component of Interface; a constant at namespace scope in T's source file. T's parameters
 /// come from `static Parameters<T> T::parameters()`; relations between them from an optional `void T::check()
-/// const`, which throws std::invalid_argument with the broken rule. An optional `static constexpr const char*
-/// kExample` is shown as example, where one made from required parameters would break such a relation.
+/// const`, which throws std::invalid_argument with the broken rule (BrokenRules with several). An optional
+/// `static constexpr const char* kExample` is shown as example, where one made from required parameters would
+/// break such a relation.
 template <class Interface, class T>
 class Component {
  public:
@@ -84,7 +91,7 @@ class Component {
       try {
         object.check();
       } catch (const std::invalid_argument& broken) {
-        reader.error(element.place, "<" + element.name + ">: " + broken.what());
+        detail::report_broken(broken, element, diagnostics);
         return nullptr;
       }
     }

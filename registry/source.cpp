@@ -150,6 +150,10 @@ const Element* Element::child(std::string_view child_name) const {
   return found == children.end() ? nullptr : &*found;
 }
 
+const Place& place_of(const Attribute* attribute, const Element& element) {
+  return attribute != nullptr && attribute->value_place.file ? attribute->value_place : element.place;
+}
+
 std::shared_ptr<const SourceFile> read_source(const std::string& path, std::size_t largest) {
   const auto source = std::make_shared<SourceFile>(SourceFile{path, {}});
   const Place place{source, 0, 0, 1, nullptr};
@@ -171,7 +175,15 @@ std::shared_ptr<const SourceFile> read_head(const std::string& path, std::size_t
 }
 
 Element parse_xml(const std::shared_ptr<const SourceFile>& source) {
+  std::vector<Diagnostic> mistakes;
+  Element root = parse_xml(source, mistakes);
+  if (!mistakes.empty()) throw ConfigError(std::move(mistakes));
+  return root;
+}
+
+Element parse_xml(const std::shared_ptr<const SourceFile>& source, std::vector<Diagnostic>& mistakes) {
   const ScannedXml scanned = scan_xml(source);
+  mistakes.insert(mistakes.end(), scanned.mistakes.begin(), scanned.mistakes.end());
   tinyxml2::XMLDocument document;
   if (document.Parse(scanned.text.data(), scanned.text.size()) != tinyxml2::XML_SUCCESS ||
       document.RootElement() == nullptr) {

@@ -37,6 +37,9 @@ struct Element {
   const Element* child(std::string_view child_name) const;
 };
 
+/// Where an attribute's value stands; the element's place when it is not given.
+const Place& place_of(const Attribute* attribute, const Element& element);
+
 /// Reads a file of at most `largest` bytes. A file that cannot be read, is empty or is not text gives one
 /// located error.
 std::shared_ptr<const SourceFile> read_source(const std::string& path,
@@ -48,6 +51,8 @@ std::shared_ptr<const SourceFile> read_head(const std::string& path, std::size_t
 /// Parses the root element of a text, refusing what XML forbids and tinyxml2 lets pass: a second root, text
 /// after the root, entities other than the five, DOCTYPE; also text between elements. Throws ConfigError.
 Element parse_xml(const std::shared_ptr<const SourceFile>& source);
+/// The same, but goes on after mistakes that leave the rest clear, and adds them to `mistakes`.
+Element parse_xml(const std::shared_ptr<const SourceFile>& source, std::vector<Diagnostic>& mistakes);
 
 /// The text as it is written inside XML, in quotes or between tags.
 std::string escape_xml(std::string_view text);

@@ -86,7 +86,7 @@ class Scanner {
            fmt::format("</{}> is missing", open_.back().name));
     }
     if (xml_.tags.empty()) fail(place(at_, 0), "there is no element in this file");
-    diagnostics_.throw_if_any();
+    xml_.mistakes = diagnostics_.all();
     return std::move(xml_);
   }
 
@@ -311,9 +311,9 @@ void Scanner::scan_attribute(ScannedTag& tag, std::string_view element,
   if (name.empty()) fail(place(at_, 1), unexpected(element), "attributes look like name=\"value\"");
   ScannedAttribute attribute;
   attribute.name = place(begin, name.size());
-  if (std::find(names.begin(), names.end(), name) != names.end()) {
+  const bool twice = std::find(names.begin(), names.end(), name) != names.end();
+  if (twice)
     diagnostics_.error(attribute.name, fmt::format("<{}> has the attribute '{}' twice", element, name));
-  }
   names.push_back(name);
   skip_blank();
   if (!looking_at("=")) {
@@ -327,6 +327,7 @@ void Scanner::scan_attribute(ScannedTag& tag, std::string_view element,
          fmt::format("{}=\"...\"", name));
   }
   attribute.value = scan_value(name);
+  if (twice) return blank_out(begin, at_);
   tag.attributes.push_back(std::move(attribute));
 }
 
@@ -379,6 +380,7 @@ void Scanner::check_reference(std::size_t begin, std::size_t end) {
   const auto [stop, failure] = std::from_chars(digits.data(), last, code, hexadecimal ? 16 : 10);
   if (failure != std::errc{} || stop != last || !is_character(static_cast<char32_t>(code))) {
     diagnostics_.error(where, fmt::format("'&{};' is not a character", name));
+    xml_.text[begin] = '?';
   }
 }
 

@@ -37,16 +37,19 @@ void check_keys(const std::vector<Entry>& entries, const TableKeys& keys) {
       if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
     }
   }
+  Rules rules;
   std::set<std::string> seen;
   for (const std::string& key : keys.all()) {
-    if (std::find(known.begin(), known.end(), key) == known.end()) {
-      throw std::invalid_argument(fmt::format("{}: nothing here has the column '{}'; {}", keys.parameters,
-                                              key, suggestion(key, known)));
-    }
-    if (!seen.insert(key).second) {
-      throw std::invalid_argument(fmt::format("{}: '{}' stands twice", keys.parameters, key));
-    }
+    rules.check("", [&] {
+      if (std::find(known.begin(), known.end(), key) == known.end()) {
+        throw std::invalid_argument(fmt::format("{}: nothing here has the column '{}'; {}", keys.parameters,
+                                                key, suggestion(key, known)));
+      }
+      if (!seen.insert(key).second)
+        throw std::invalid_argument(fmt::format("{}: '{}' stands twice", keys.parameters, key));
+    });
   }
+  rules.enforce();
 }
 
 /// Averaging over anything but replicates would hide what differs.
@@ -199,9 +202,10 @@ std::string key_column(const Table& table, const std::string& key) {
   return table.has(kRenamed + key) ? kRenamed + key : key;
 }
 
-void refuse_replicates(const NodeOptions& node) {
+void refuse_replicates(const NodeOptions& node, Rules& rules) {
   if (!node.replicates) return;
-  throw std::invalid_argument(
+  rules.broken(
+      "replicates",
       "replicates: this node takes all replicates of what it shows and makes one file; leave it out");
 }
 

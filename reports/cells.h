@@ -55,9 +55,9 @@ void rename_taken_keys(Table& table, std::size_t keys);
 /// The name that the key's column has in such a table.
 std::string key_column(const Table& table, const std::string& key);
 
-/// A table or figure shows all replicates of what it is of; it throws std::invalid_argument when it is to
-/// have some of its own, which would be as many equal ones, or a part of what there is in each.
-void refuse_replicates(const NodeOptions& node);
+/// A table or figure shows all replicates of what it is of; a rule is broken when it is to have some of its
+/// own, which would be as many equal ones, or a part of what there is in each.
+void refuse_replicates(const NodeOptions& node, Rules& rules);
 
 /// True unless the text is a quantity of another dimension than a key in this SI unit ("": none is known).
 bool fits_unit(std::string_view text, std::string_view unit);

@@ -41,8 +41,12 @@ struct CompareNode : Node {
   std::string published_in() const override { return "tables"; }
 
   void check(const NodeContext& context) const override {
-    refuse_replicates(*this);
-    arranged(context);
+    Rules rules;
+    refuse_replicates(*this, rules);
+    rules.check("metric", [&] { require_metric(context.inputs("of"), metric); });
+    rules.check("better", [&] { require_better(metric, better); });
+    rules.check("", [&] { arranged(context); });
+    rules.enforce();
   }
 
   void run(NodeContext& context) const override {
@@ -108,8 +112,6 @@ struct CompareNode : Node {
 
   Arrangement arranged(const NodeContext& context) const {
     Arrangement what;
-    require_metric(context.inputs("of"), metric);
-    require_better(metric, better);
     what.cells = arrange(entries_of(context.inputs("of")), {within, by, "by and within"});
     std::vector<std::string> names;
     const auto group = [&](std::size_t i) {

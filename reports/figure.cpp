@@ -42,26 +42,13 @@ struct FigureNode : Node {
 
   void check(const NodeContext& context) const override {
     const std::vector<InputNode>& nodes = context.inputs("of");
-    refuse_replicates(*this);
-    check_kind();
-    const Source source = source_of(nodes);
-    if (source != Source::datasets && !observations.empty()) {
-      throw std::invalid_argument("observations lie beside lines of datasets only");
-    }
-    if (source == Source::learning) {
-      check_learning(nodes);
-    } else if (source == Source::datasets) {
-      check_datasets(nodes);
-      check_datasets(context.inputs("observations"));
-    } else {
-      require_metric(nodes, metric());
-      if (kind == FigureKind::profile) require_better(metric(), better);
-      if (kind == FigureKind::profile || kind == FigureKind::histogram) check_episodes(nodes);
-      if (kind == FigureKind::line && (x.empty() || is_time(x))) {
-        throw std::invalid_argument(
-            "give x, a column of a sweep; only learning nodes have a course over iterations or time");
-      }
-    }
+    Rules rules;
+    refuse_replicates(*this, rules);
+    check_kind(rules);
+    std::optional<Source> source;
+    rules.check("of", [&] { source = source_of(nodes); });
+    if (source) check_source(*source, context, rules);
+    rules.enforce();
     groups(drawn(context));
   }
 
@@ -128,11 +115,32 @@ struct FigureNode : Node {
   }
 
   /// That nothing is given which this kind of figure would not heed.
-  void check_kind() const {
-    if (kind != FigureKind::line && !x.empty()) throw std::invalid_argument("only a line has an x");
-    if (kind != FigureKind::histogram && bins) throw std::invalid_argument("only a histogram has bins");
+  void check_kind(Rules& rules) const {
+    if (kind != FigureKind::line && !x.empty()) rules.broken("x", "only a line has an x");
+    if (kind != FigureKind::histogram && bins) rules.broken("bins", "only a histogram has bins");
     if (kind != FigureKind::profile && better != Direction::automatic) {
-      throw std::invalid_argument("better: only of a profile does it matter which values are good");
+      rules.broken("better", "better: only of a profile does it matter which values are good");
+    }
+  }
+
+  void check_source(Source source, const NodeContext& context, Rules& rules) const {
+    const std::vector<InputNode>& nodes = context.inputs("of");
+    if (source != Source::datasets && !observations.empty())
+      rules.broken("observations", "observations lie beside lines of datasets only");
+    if (source == Source::learning) return check_learning(nodes, rules);
+    if (source == Source::datasets) {
+      check_datasets(rules);
+      check_dataset_columns(nodes, rules);
+      return check_dataset_columns(context.inputs("observations"), rules);
+    }
+    std::optional<Metric> shown;
+    rules.check("y", [&] { shown = metric(); });
+    if (shown) rules.check("y", [&] { require_metric(nodes, *shown); });
+    if (shown && kind == FigureKind::profile) rules.check("better", [&] { require_better(*shown, better); });
+    if (kind == FigureKind::profile || kind == FigureKind::histogram) check_episodes(nodes, rules);
+    if (kind == FigureKind::line && (x.empty() || is_time(x))) {
+      rules.broken("x",
+                   "give x, a column of a sweep; only learning nodes have a course over iterations or time");
     }
   }
 
@@ -145,49 +153,53 @@ struct FigureNode : Node {
   }
 
   /// That the progress of each node has x and y, as far as its columns are known.
-  void check_learning(const std::vector<InputNode>& nodes) const {
+  void check_learning(const std::vector<InputNode>& nodes, Rules& rules) const {
     if (kind != FigureKind::line) {
-      throw std::invalid_argument(
-          "only metrics have histograms, intervals and profiles; evaluate what was learned");
+      rules.broken("kind", "only metrics have histograms, intervals and profiles; evaluate what was learned");
+      return;
     }
-    if (contains(estimate_column_names(), x)) {
-      throw std::invalid_argument(fmt::format("x: a figure has a column '{}' of its own", x));
-    }
+    const bool taken = contains(estimate_column_names(), x);
+    if (taken) rules.broken("x", fmt::format("x: a figure has a column '{}' of its own", x));
     for (const InputNode& node : nodes) {
       const std::vector<std::string>& known = node.progress_columns;
       if (known.empty()) continue;
       const auto check = [&](const char* parameter, const std::string& column) {
         if (contains(known, column)) return;
-        throw std::invalid_argument(fmt::format("{}: the progress of '{}' has no column '{}'; {}", parameter,
-                                                node.id, column, suggestion(column, known)));
+        rules.broken(parameter,
+                     fmt::format("{}: the progress of '{}' has no column '{}'", parameter, node.id, column),
+                     suggestion(column, known));
       };
-      if (!is_time(x)) check("x", learning_x());
+      if (!is_time(x) && !taken) check("x", learning_x());
       check("y", y);
     }
   }
 
   /// That episodes were kept where these are the units.
-  static void check_episodes(const std::vector<InputNode>& nodes) {
+  static void check_episodes(const std::vector<InputNode>& nodes, Rules& rules) {
     for (const InputNode& node : nodes) {
       if (node.replicate || !node.training.empty() || node.element->get("returns") != "false") continue;
-      throw std::invalid_argument(fmt::format(
-          "'{}' does not keep the episodes that this figure counts (returns=\"false\")", node.id));
+      rules.broken("of", fmt::format("'{}' does not keep the episodes that this figure counts "
+                                     "(returns=\"false\")",
+                                     node.id));
     }
   }
 
-  /// That each dataset has x and y, as far as its columns are known.
-  void check_datasets(const std::vector<InputNode>& nodes) const {
-    if (kind != FigureKind::line) throw std::invalid_argument("of datasets there are lines only");
-    if (x.empty() || x == y) throw std::invalid_argument("give x and y, two columns of the datasets");
-    if (is_time(x) || contains(estimate_column_names(), x)) {
-      throw std::invalid_argument(fmt::format("x: a figure has a column '{}' of its own", x));
-    }
+  void check_datasets(Rules& rules) const {
+    if (kind != FigureKind::line) rules.broken("kind", "of datasets there are lines only");
+    if (x.empty() || x == y) rules.broken("x", "give x and y, two columns of the datasets");
+    if (is_time(x) || contains(estimate_column_names(), x))
+      rules.broken("x", fmt::format("x: a figure has a column '{}' of its own", x));
+  }
+  /// As far as their columns are known.
+  void check_dataset_columns(const std::vector<InputNode>& nodes, Rules& rules) const {
+    const auto check = [&](const InputNode& node, const char* parameter, const std::string& column) {
+      if (column.empty() || node.columns.empty() || contains(node.columns, column)) return;
+      rules.broken(parameter, fmt::format("the dataset '{}' has no column '{}'", node.id, column),
+                   suggestion(column, node.columns));
+    };
     for (const InputNode& node : nodes) {
-      for (const std::string& column : {x, y}) {
-        if (node.columns.empty() || contains(node.columns, column)) continue;
-        throw std::invalid_argument(fmt::format("the dataset '{}' has no column '{}'; {}", node.id, column,
-                                                suggestion(column, node.columns)));
-      }
+      check(node, "x", x);
+      check(node, "y", y);
     }
   }
 

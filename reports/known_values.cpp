@@ -49,8 +49,9 @@ KnownValues::KnownValues(const std::string& file, const TableKeys& keys, const s
                                   names.empty() ? "keys to the table and columns for them to the file"
                                                 : "a column " + join(names, " or ")));
   }
+  if (table_.rows.empty()) throw ConfigError(fmt::format("{}: there are no rows in it", file));
   check_units(file, keys, cells);
-  bool any = table_.rows.empty();
+  bool any = false;
   for (const TableCell& cell : cells) {
     int found = 0;
     for (std::size_t row = 0; row < table_.rows.size(); ++row) found += matches(row, cell) ? 1 : 0;

@@ -16,8 +16,8 @@ class KnownValues {
  public:
   KnownValues() = default;  ///< knows nothing
   /// Throws ConfigError naming the file: for other columns (with the nearest), for a value that is no number,
-  /// for a key of another dimension, for several rows without a key, and when no row is about any of the
-  /// cells, or two are about the same.
+  /// for a key of another dimension, for several rows without a key, when there are no rows, when none is
+  /// about any of the cells, and when two are about the same.
   KnownValues(const std::string& file, const TableKeys& keys, const std::vector<TableCell>& cells);
 
   /// The value for a cell; NaN when there is none.

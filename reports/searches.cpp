@@ -33,13 +33,16 @@ SearchLog read_search(const InputNode& node) {
 }
 
 void SearchReport::check(const NodeContext& context) const {
+  Rules rules;
   for (const InputNode& node : context.inputs("of")) {
     const std::vector<std::string>& columns = node.progress_columns;  // empty: as of the first replicate
     if (columns.empty() || std::find(columns.begin(), columns.end(), "gap") != columns.end()) continue;
-    throw std::invalid_argument(fmt::format(
-        "the optimum of '{}' is not known: only searches of objectives tell when they reached it", node.id));
+    rules.broken("of", fmt::format("the optimum of '{}' is not known: only searches of objectives tell when "
+                                   "they reached it",
+                                   node.id));
   }
-  arrange(entries_of(context.inputs("of")), keys());
+  rules.check("", [&] { arrange(entries_of(context.inputs("of")), keys()); });
+  rules.enforce();
 }
 
 SearchRun run_to(const SearchLog& search, double gap) {

@@ -37,22 +37,37 @@ struct TableNode : Node {
     }
   }
   void check(const NodeContext& context) const override {
-    refuse_replicates(*this);
-    cells_and_values(context);
+    Rules rules;
+    refuse_replicates(*this, rules);
+    const std::vector<InputNode>& nodes = context.inputs("of");
+    rules.check("metric", [&] { require_metric(nodes, metric); });
+    if (reference || !reference_file.path.empty())
+      rules.check("better", [&] { require_better(metric, better); });
+    const TableKeys keys{rows, columns};
+    std::vector<TableCell> cells;
+    rules.check("", [&] { cells = arrange(entries_of(nodes), keys); });
+    if (!cells.empty()) {
+      rules.check("published", [&] { known_values(published, keys, cells); });
+      rules.check("reference_file", [&] { known_values(reference_file, keys, cells); });
+    }
+    rules.enforce();
   }
 
   void run(NodeContext& context) const override {
-    const Content content = cells_and_values(context);
+    const TableKeys keys{rows, columns};
+    const std::vector<TableCell> cells = arrange(entries_of(context.inputs("of")), keys);
+    const KnownValues published_values = known_values(published, keys, cells);
+    const KnownValues references = known_values(reference_file, keys, cells);
     Table table;
-    add_key_columns(table, {rows, columns}, content.cells);
+    add_key_columns(table, keys, cells);
     add_value_columns(table);
     rename_taken_keys(table, rows.size() + columns.size());
-    for (std::size_t i = 0; i < content.cells.size(); ++i) {
-      const TableCell& cell = content.cells[i];
-      const double target = reference ? *reference : content.references.find(cell);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const TableCell& cell = cells[i];
+      const double target = reference ? *reference : references.find(cell);
       add_values(table.rows[i],
                  summarize(context.inputs("of"), cell, metric, coppice::better(metric, better), interval),
-                 content.published.find(cell), target);
+                 published_values.find(cell), target);
     }
     write_table(context.folder() / kTableFile, table);
   }
@@ -82,20 +97,9 @@ struct TableNode : Node {
   }
 
  private:
-  struct Content {
-    std::vector<TableCell> cells;
-    KnownValues published, references;
-  };
-
-  Content cells_and_values(const NodeContext& context) const {
-    require_metric(context.inputs("of"), metric);
-    if (reference || !reference_file.path.empty()) require_better(metric, better);
-    const TableKeys keys{rows, columns};
-    Content content;
-    content.cells = arrange(entries_of(context.inputs("of")), keys);
-    if (!published.path.empty()) content.published = {published.path, keys, content.cells};
-    if (!reference_file.path.empty()) content.references = {reference_file.path, keys, content.cells};
-    return content;
+  static KnownValues known_values(const FilePath& file, const TableKeys& keys,
+                                  const std::vector<TableCell>& cells) {
+    return file.path.empty() ? KnownValues() : KnownValues(file.path, keys, cells);
   }
 
   void add_value_columns(Table& table) const {

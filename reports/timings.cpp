@@ -33,8 +33,10 @@ struct TimingsNode : Node {
   std::string published_in() const override { return "figures"; }
 
   void check(const NodeContext& context) const override {
-    refuse_replicates(*this);
-    arrange(entries_of(context.inputs("of")), {rows, columns});
+    Rules rules;
+    refuse_replicates(*this, rules);
+    rules.check("", [&] { arrange(entries_of(context.inputs("of")), {rows, columns}); });
+    rules.enforce();
   }
 
   void run(NodeContext& context) const override {

@@ -38,7 +38,10 @@ struct PolicyExport : PolicyInputs {
   int run(const CommandLine& line, Console& console) const {
     if (to.empty()) throw line.error(file, "policy export needs --to cpp, dot, json or onnx");
     const std::shared_ptr<const Exporter> exporter = located(line, to, [this] { return make_exporter(to); });
-    located(line, name, [this] { return check_export_name(name); });
+    located(line, name, [&] {
+      check_export_name(name);
+      exporter->check_name(name);
+    });
     if (output == "-" && exporter->binary() && console.stdout_is_terminal())
       throw line.error(to, "the output is no text: say where to with --output FILE");
     const ReadyPolicy ready = ready_policy(line, *this);

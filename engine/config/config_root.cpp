@@ -59,7 +59,7 @@ class RootReader {
 
   bool version() {
     const Attribute* attribute = file_.root.find("coppice");
-    if (attribute == nullptr) return false;  // reported
+    if (attribute == nullptr) return true;  // reported; what follows may well be meant for this version
     const std::string& text = attribute->value;
     int version = 0;
     const auto [stop, failure] = std::from_chars(text.data(), text.data() + text.size(), version);

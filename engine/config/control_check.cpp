@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "engine/config/attribute_place.h"
 #include "engine/config/expression_tree.h"
+#include "engine/config/value.h"
 #include "registry/suggest.h"
 #include "registry/text.h"
 
@@ -79,6 +81,20 @@ bool check_name(const std::string& name, const Place& place, Diagnostics& diagno
   if (problem.empty()) return true;
   diagnostics.error(place, fmt::format("'{}' cannot be a name", name), problem);
   return false;
+}
+
+bool check_items(const Attribute& list, Diagnostics& diagnostics) {
+  const std::vector<std::string> items = split_items(list.value);
+  const std::vector<std::size_t> offsets = item_offsets(list.value);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (!items[i].empty() || trim(list.value.substr(offsets[i])).substr(0, 1) == "'") continue;
+    Place place = place_in(list, offsets[i], 1);
+    place.trace = list.value_place.trace;
+    diagnostics.error(place, fmt::format("'{}' has an empty item", list.name),
+                      "values are separated by single commas");
+    return false;
+  }
+  return true;
 }
 
 bool check_control(const Element& element, const ControlElement& declaration, const Trace& trace,

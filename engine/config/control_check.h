@@ -24,4 +24,7 @@ bool is_id(const std::string& text);
 /// Reports a name that expressions could not use: not an identifier, kept by the language, or a function.
 bool check_name(const std::string& name, const Place& place, Diagnostics& diagnostics);
 
+/// Reports an item of a list written as text (see split_items) that is empty; one in quotes may be.
+bool check_items(const Attribute& list, Diagnostics& diagnostics);
+
 }  // namespace coppice::config

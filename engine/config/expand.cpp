@@ -178,6 +178,8 @@ ExperimentConfig expand_file(config::Files& files, const config::LoadedFile& fil
   ExperimentConfig experiment;
   experiment.path = file.source->path;
   experiment.place = file.root.place;
+  for (const Diagnostic& mistake : file.mistakes)
+    diagnostics.error(mistake.place, mistake.message, mistake.hint, mistake.notes);
   const config::RootAttributes root = config::read_root(file, files, nullptr, diagnostics);
   experiment.name = root.name;
   experiment.doc = root.doc;

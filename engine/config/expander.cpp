@@ -19,9 +19,6 @@ bool is_control(std::string_view name) {
   return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
 }
 
-/// Ends an expansion that would not end by itself; the mistake was reported.
-struct Endless {};
-
 }  // namespace
 
 Expander::Origin::Origin(const Element& met, const Context& context) : element(&met) {
@@ -150,7 +147,7 @@ void Expander::check_depth(const Element& element, const Context& context) {
   // The trace would be as long as the calls are deep.
   diagnostics_.error(element.place, fmt::format("macros call each other more than {} levels deep", kDeepest),
                      "a macro that calls itself needs an if= that ends it", called);
-  throw Endless();
+  throw TooDeep();
 }
 
 bool Expander::check(const Element& element, std::string_view parent, const Context& context) {

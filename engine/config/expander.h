@@ -66,6 +66,10 @@ class Expander {
     bool failed = false;
     std::map<std::string, std::size_t> index;  ///< of the row with these values; filled when first needed
   };
+  /// Ends an expansion that would not end by itself; the mistake was reported.
+  struct Endless {};
+  /// Ends the call of a macro that would not end by itself.
+  struct TooDeep : Endless {};
   struct Exclusion {
     const Element* element = nullptr;
     Context context;
@@ -116,6 +120,7 @@ class Expander {
   void macro(const Element& element, const Context& context);
   std::vector<MacroParameter> parameters(const Attribute& params, const Context& context);
   void call(const Element& element, const Context& context, Element* parent);
+  void expand_call(const Macro& macro, const Element& element, const Context& context, Element* parent);
   const Macro* find_macro(const Element& element, const Context& context);
   Context body_context(const Macro& macro, const Element& call, const Context& context);
   void pass_values(const Macro& macro, const Element& call, const Context& context, const Context& body);
@@ -134,6 +139,8 @@ class Expander {
   // expander_nodes.cpp
   void node(const Element& element, const Context& context);
   void node_over_sweeps(const Element& element, const Context& context);
+  bool left_out_with_its_sweeps(const Element& element, Context context);
+  const Element* sweep_left_out(const std::string& id) const;
   std::vector<DefinedSweep*> sweeps_of(const Element& element, Context& context);
   bool check_shared_columns(const Attribute& over, const std::vector<DefinedSweep*>& sweeps,
                             const Context& context);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <string_view>
 
 #include "engine/config/control_check.h"
 #include "engine/config/expander.h"
@@ -97,6 +99,7 @@ std::optional<Value> Expander::argument_value(const Element& element, const std:
 std::optional<Value> Expander::given_value(const Element& element, GivenArgument& given,
                                            const Context& context) {
   given.taken = true;
+  if (given.values.size() > 1 && !check_items(given.whole, diagnostics_)) return std::nullopt;
   if (given.values.size() > 1 && element.get("type") != "list") given_.sweep(given);
   if (!given.swept) return checked(element, given.whole, evaluator_.value(given.whole, context), context);
   std::optional<Value> chosen;
@@ -128,7 +131,13 @@ std::optional<Value> Expander::typed(const Element& element, const Attribute& so
     return value;
   }
   if (type == "text") return Value::text(value.to_text());
-  if (type == "list") return value.as_list() != nullptr ? value : Value::list({value});
+  if (type == "list") {
+    Attribute list = source;
+    list.value_place = traced(source.value_place, context);
+    const bool as_written = source.value.find("${") == std::string::npos;
+    if (as_written && !check_items(list, diagnostics_)) return std::nullopt;
+    return value.as_list() != nullptr ? value : Value::list({value});
+  }
   const double* plain = value.as_plain_number();
   const bool integer = plain != nullptr && *plain == std::floor(*plain) && std::abs(*plain) <= 0x1p53;
   const bool good = type == "boolean"   ? value.as_boolean() != nullptr
@@ -169,7 +178,15 @@ bool Expander::allowed(const Element& element, const Attribute& source, const Va
                        const Context& context) {
   const Attribute* attribute = element.find("values");
   if (attribute == nullptr) return true;
+  Attribute values = *attribute;
+  values.value_place = traced(attribute->value_place, context);
+  check_items(values, diagnostics_);
   const std::vector<std::string> texts = split_items(attribute->value);
+  std::set<std::string_view> seen;
+  for (const std::string& text : texts) {
+    if (!seen.insert(text).second)
+      error(attribute->value_place, context, fmt::format("'values' has '{}' twice", text));
+  }
   const bool listed = std::any_of(texts.begin(), texts.end(), [&](const std::string& text) {
     return equal(value, Value::inferred(text)).value_or(false);
   });

@@ -54,21 +54,22 @@ const LoadedFile* Expander::included_file(const Element& plain, const Context& c
   }
   const std::string including = attribute.value_place.file ? attribute.value_place.file->path : "";
   const std::string path = path_beside(including, attribute.value);
+  const auto report = [&](const Diagnostic& mistake) {
+    if (mistake.place.line > 0) {  // inside the file
+      Place place = mistake.place;
+      place.trace = std::make_shared<const TraceFrame>(
+          TraceFrame{"included from", plain.place.file, plain.place.line, context.trace});
+      diagnostics_.error(place, mistake.message, mistake.hint, mistake.notes);
+    } else {
+      diagnostics_.error(attribute.value_place, fmt::format("{}: {}", path, mistake.message), mistake.hint);
+    }
+  };
   try {
     const LoadedFile& file = files_.load(path);
+    for (const Diagnostic& mistake : file.mistakes) report(mistake);
     return in_circle(file, attribute) ? nullptr : &file;
   } catch (const ConfigError& failure) {
-    for (const Diagnostic& diagnostic : failure.diagnostics()) {
-      if (diagnostic.place.line > 0) {  // inside the file
-        Place place = diagnostic.place;
-        place.trace = std::make_shared<const TraceFrame>(
-            TraceFrame{"included from", plain.place.file, plain.place.line, context.trace});
-        diagnostics_.error(place, diagnostic.message, diagnostic.hint, diagnostic.notes);
-      } else {
-        diagnostics_.error(attribute.value_place, fmt::format("{}: {}", path, diagnostic.message),
-                           diagnostic.hint);
-      }
-    }
+    for (const Diagnostic& mistake : failure.diagnostics()) report(mistake);
   }
   return nullptr;
 }

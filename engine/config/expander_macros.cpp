@@ -92,15 +92,27 @@ void Expander::call(const Element& element, const Context& context, Element* par
   const Macro* macro = check(element, "", context) ? find_macro(element, context) : nullptr;
   if (macro == nullptr) return leave_out(parent);
   called_.insert(macro);
+  const std::size_t files = active_.size();
+  try {
+    expand_call(*macro, element, context, parent);
+  } catch (const TooDeep&) {
+    if (context.macro != nullptr) throw;  // the call outside of all macros ends, what follows it goes on
+    active_.resize(files);
+    leave_out(parent);
+  }
+}
+
+void Expander::expand_call(const Macro& macro, const Element& element, const Context& context,
+                           Element* parent) {
   check_depth(element, context);
   auto frame = std::make_shared<MacroFrame>();
-  frame->macro = macro->name;
+  frame->macro = macro.name;
   frame->caller = context;
-  pass_blocks(*macro, element, context, *frame);
-  Context body = body_context(*macro, element, context);
-  pass_values(*macro, element, context, body);
+  pass_blocks(macro, element, context, *frame);
+  Context body = body_context(macro, element, context);
+  pass_values(macro, element, context, body);
   body.macro = std::move(frame);
-  children(*macro->element, body, parent);
+  children(*macro.element, body, parent);
 }
 
 const Expander::Macro* Expander::find_macro(const Element& element, const Context& context) {

@@ -49,6 +49,7 @@ void Expander::node(const Element& element, const Context& context) {
 void Expander::node_over_sweeps(const Element& element, const Context& context) {
   Context inner = context;
   inner.inside = true;
+  if (left_out_with_its_sweeps(element, inner)) return keep_unused(element, context, "");
   const std::vector<DefinedSweep*> sweeps = sweeps_of(element, inner);
   std::optional<Attribute> id;
   if (const Attribute* raw = element.find("id")) id = evaluator_.attribute(*raw, inner);
@@ -71,6 +72,27 @@ void Expander::node_over_sweeps(const Element& element, const Context& context) 
   }
 }
 
+/// True when a sweep that the node is to run over is not there, and the node's conditions do not hold either,
+/// whatever the columns of that sweep would be.
+bool Expander::left_out_with_its_sweeps(const Element& element, Context context) {
+  const Attribute* over = element.find("over");
+  if (over == nullptr || (element.find("if") == nullptr && element.find("unless") == nullptr)) return false;
+  const std::vector<std::string> ids = split_items(over->value);
+  const auto left_out = [&](const std::string& id) { return sweep_left_out(id) != nullptr; };
+  if (std::none_of(ids.begin(), ids.end(), left_out)) return false;
+  context.names_unknown = true;
+  return !wanted(element, context);
+}
+
+/// The sweep of this id that a condition left out; null when there is none.
+const Element* Expander::sweep_left_out(const std::string& id) const {
+  if (sweeps_.contains(id)) return nullptr;
+  const auto found = std::find_if(result_.unused.begin(), result_.unused.end(), [&](const UnusedPart& part) {
+    return part.element.name == "sweep" && part.element.get("id") == id;
+  });
+  return found == result_.unused.end() ? nullptr : &found->element;
+}
+
 /// The sweeps that `over` names. After a mistake, names that could be columns are no mistakes of their own.
 std::vector<Expander::DefinedSweep*> Expander::sweeps_of(const Element& element, Context& context) {
   std::vector<DefinedSweep*> sweeps;
@@ -89,12 +111,16 @@ std::vector<Expander::DefinedSweep*> Expander::sweeps_of(const Element& element,
       for (const auto& [id, sweep] : sweeps_) known.push_back(id);
       const Place place =
           place_in(worked_out, item_offsets(worked_out.value)[i], std::max<std::size_t>(1, ids[i].size()));
-      error(place, context,
-            twice ? fmt::format("the sweep '{}' is named twice", ids[i])
-                  : fmt::format("there is no sweep '{}'", ids[i]),
-            twice           ? ""
-            : known.empty() ? "no sweep is defined before this node"
-                            : suggestion(ids[i], known));
+      if (twice) {
+        error(place, context, fmt::format("the sweep '{}' is named twice", ids[i]));
+      } else if (const Element* off = sweep_left_out(ids[i])) {
+        error(place, context, fmt::format("the sweep '{}' is left out here", ids[i]),
+              "the node needs the same condition",
+              {fmt::format("by its condition at {}:{}", off->place.file->path, off->place.line)});
+      } else {
+        error(place, context, fmt::format("there is no sweep '{}'", ids[i]),
+              known.empty() ? "no sweep is defined before this node" : suggestion(ids[i], known));
+      }
       good = false;
       continue;
     }

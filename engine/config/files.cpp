@@ -64,7 +64,7 @@ const LoadedFile& Files::load(const std::string& path) {
 const LoadedFile& Files::add(std::shared_ptr<const SourceFile> source) {
   auto file = std::make_unique<LoadedFile>();
   file->identity = identity_of(source->path);
-  file->root = parse_xml(source);
+  file->root = parse_xml(source, file->mistakes);
   read_.push_back({source->path, hash_of(source->text)});
   file->source = std::move(source);
   const std::string identity = file->identity;

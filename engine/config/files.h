@@ -17,6 +17,7 @@ struct LoadedFile {
   std::shared_ptr<const SourceFile> source;
   std::string identity;  ///< the absolute path without links: tells whether two names mean the same file
   Element root;
+  std::vector<Diagnostic> mistakes;  ///< against XML, after which the rest was clear
 };
 
 /// Every file that an expansion reads, each once.

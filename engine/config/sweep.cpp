@@ -228,18 +228,9 @@ std::optional<std::vector<Value>> read_values(const Attribute& attribute, Diagno
                       "values are separated by commas");
     return std::nullopt;
   }
-  const std::vector<std::size_t> offsets = item_offsets(attribute.value);
+  if (!check_items(attribute, diagnostics)) return std::nullopt;
   std::vector<Value> values;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (items[i].empty() && trim(attribute.value.substr(offsets[i])).substr(0, 1) != "'") {
-      Place place = place_in(attribute, offsets[i], 1);
-      place.trace = attribute.value_place.trace;
-      diagnostics.error(place, fmt::format("'{}' has an empty item", attribute.name),
-                        "values are separated by single commas");
-      return std::nullopt;
-    }
-    values.push_back(Value::inferred(items[i]));
-  }
+  for (const std::string& item : items) values.push_back(Value::inferred(item));
   return values;
 }
 

@@ -120,6 +120,7 @@ class UnusedCheck {
     if (element.name == "macro") add_parameters(element.get("params"));
     if (element.name == "insert") check_block(element);
     check_attributes(element, meaning);
+    check_required(element, meaning);
     for (const Attribute& attribute : element.attributes) check_expressions(attribute);
     Meaning content = element.name == "group" ? parent : meaning;
     content.anything = content.anything || element.name == "macro" || element.name == "call";
@@ -177,6 +178,28 @@ class UnusedCheck {
                          fmt::format("<{}> has no {} '{}'", element.name,
                                      meaning.components.empty() ? "attribute" : "parameter", attribute.name),
                          suggestion(attribute.name, known));
+    }
+  }
+
+  /// Where it is clear what the element is.
+  void check_required(const Element& element, const Meaning& meaning) {
+    if (meaning.controls.size() + meaning.components.size() + meaning.slots.size() != 1) return;
+    for (const ControlElement* control : meaning.controls) {
+      for (const auto& [name, doc] : control->attributes) {
+        const std::string plain = name.substr(0, name.size() - 1);
+        if (!name.ends_with('!') || element.find(plain) != nullptr) continue;
+        diagnostics_.error(traced(element.place),
+                           fmt::format("<{}> needs the attribute '{}'", element.name, plain), doc);
+      }
+    }
+    Element here = element, unused;
+    here.place = traced(element.place);
+    Reader reader(here, &unused, &diagnostics_);
+    for (const ComponentInfo* info : meaning.components) {
+      for (const ParameterInfo& parameter : info->parameters) {
+        if (parameter.required && element.find(parameter.name) == nullptr)
+          detail::report_missing(parameter, info->parameters, reader);
+      }
     }
   }
 

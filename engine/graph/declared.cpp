@@ -61,9 +61,10 @@ class ElementReader {
     const Element& element = given.element;
     const Attribute* id = element.find("id");
     const std::string name(trim(id == nullptr ? std::string_view() : std::string_view(id->value)));
-    if (id != nullptr && !is_name(name)) {
-      diagnostics_.error(place_of(id, element), fmt::format("id=\"{}\" is no name", id->value),
-                         "a name has letters, digits, '_' and '-', and starts with a letter or '_'");
+    if (id != nullptr && (id->failed || !is_name(name))) {
+      if (!id->failed)
+        diagnostics_.error(place_of(id, element), fmt::format("id=\"{}\" is no name", id->value),
+                           "a name has letters, digits, '_' and '-', and starts with a letter or '_'");
       make<Node>(element, diagnostics_);  // reports its other mistakes
       return nullptr;
     }
@@ -101,15 +102,22 @@ class ElementReader {
   std::map<std::string, std::set<Point>> points_;
 };
 
-}  // namespace
-
-const Place& place_of(const Attribute* attribute, const Element& element) {
-  return attribute != nullptr && attribute->value_place.file ? attribute->value_place : element.place;
+void note_left_out(const Element& element, Declarations& declarations) {
+  if (element.name == "group") {
+    for (const Element& child : element.children) note_left_out(child, declarations);
+  } else if (Catalogue::instance().find(Node::kInterface, element.name) != nullptr && element.place.file) {
+    declarations.left_out.emplace(trim(element.get("id")), element.place);
+  }
 }
+
+}  // namespace
 
 Declarations declare(const ExperimentConfig& experiment, Diagnostics& diagnostics) {
   Declarations declarations;
   ElementReader reader(declarations, diagnostics);
+  for (const UnusedPart& part : experiment.unused) {
+    if (part.parent.empty()) note_left_out(part.element, declarations);
+  }
   for (const NodeElement& given : experiment.nodes) reader.read(given);
   resolve_references(declarations, diagnostics);
   return declarations;

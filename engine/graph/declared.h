@@ -47,10 +47,8 @@ struct Declarations {
   std::vector<DeclaredNode> nodes;
   std::vector<std::size_t> order;
   std::set<std::string, std::less<>> of_unknown_kind;  ///< ids of elements that are no node kind
+  std::map<std::string, Place, std::less<>> left_out;  ///< ids of nodes whose conditions do not hold
 };
-
-/// Where an attribute's value stands; the element's place when it is not given.
-const Place& place_of(const Attribute* attribute, const Element& element);
 
 /// Reads every element, finds the nodes that references name, and orders them. Mistakes go to `diagnostics`:
 /// unknown kinds and ids, ids used twice, references to nodes that do not make what is needed, cycles. The

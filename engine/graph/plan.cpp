@@ -6,9 +6,9 @@
 #include <map>
 #include <set>
 
+#include "engine/graph/check_nodes.h"
 #include "engine/graph/declared.h"
 #include "engine/graph/key.h"
-#include "engine/graph/planned_context.h"
 #include "engine/graph/planner.h"
 
 namespace coppice {
@@ -35,76 +35,6 @@ void check_name(const ExperimentConfig& experiment, Diagnostics& diagnostics) {
   if (!plain || name == "store" || name == "index.sqlite") {
     diagnostics.error(experiment.place, fmt::format("name=\"{}\" cannot be the name of a folder", name),
                       "a name has letters, digits, '_', '-' and '.', and is not 'store'");
-  }
-}
-
-/// The elements as they were written, by those that the planned nodes have.
-using WrittenElements = std::map<const Element*, const Element*>;
-
-WrittenElements written_elements(const Declarations& declarations) {
-  WrittenElements written;
-  for (const DeclaredNode& node : declarations.nodes) {
-    for (const DeclaredElement& element : node.elements) written[element.resolved.get()] = element.written;
-  }
-  return written;
-}
-
-/// The attribute by which an element, or one inside it, names a file; null when none does.
-const Attribute* attribute_naming(const Element& element, const std::string& path) {
-  for (const Attribute& attribute : element.attributes) {
-    if (attribute.value_place.file && path_of_file(attribute) == path) return &attribute;
-  }
-  for (const Element& child : element.children) {
-    if (const Attribute* found = attribute_naming(child, path)) return found;
-  }
-  return nullptr;
-}
-
-/// A mistake in a file that the element names stands where it names it; one at a place in the file stays
-/// there. One in a whole file that an input names was found there: those are collected in `bad_files`.
-void report(Diagnostic mistake, const PlannedNode& node, const Element& written,
-            std::set<std::string>& bad_files, Diagnostics& diagnostics) {
-  const Attribute* naming =
-      mistake.place.file ? attribute_naming(written, mistake.place.file->path) : nullptr;
-  if (!mistake.place.file) {
-    mistake.place = node.place;
-  } else if (naming == nullptr && mistake.place.line == 0 && bad_files.contains(mistake.place.file->path)) {
-    diagnostics.already_reported();
-    return;
-  } else if (naming != nullptr && mistake.place.line == 0) {
-    bad_files.insert(mistake.place.file->path);
-    mistake.message = fmt::format("{}: {}", naming->value, mistake.message);
-    mistake.place = naming->value_place;
-  } else if (naming != nullptr) {
-    const Place& place = naming->value_place;
-    mistake.notes.push_back(
-        fmt::format("named by '{}' at {}:{}:{}", naming->name, place.file->path, place.line, place.column));
-  }
-  diagnostics.error(mistake.place, std::move(mistake.message), std::move(mistake.hint),
-                    std::move(mistake.notes));
-}
-
-/// Lets every node check itself with the elements of its inputs; replicates differ in nothing that it could
-/// check.
-void check_nodes(Plan& plan, const WrittenElements& written, Diagnostics& diagnostics) {
-  std::set<std::string> bad_files;
-  for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
-    PlannedNode& node = plan.nodes[i];
-    if (node.replicate.value_or(0) != 0) continue;
-    try {
-      const PlannedContext context(plan, i);
-      node.node->check(context);
-      node.columns = node.node->dataset_columns(context);
-      node.progress_columns = node.node->progress_columns(context);
-      node.spaces = node.node->spaces(context);
-    } catch (const ConfigError& error) {
-      for (const Diagnostic& mistake : error.diagnostics())
-        report(mistake, node, *written.at(node.resolved.get()), bad_files, diagnostics);
-    } catch (const std::invalid_argument& broken) {
-      diagnostics.error(node.place, fmt::format("<{}>: {}", node.kind, broken.what()));
-    } catch (const std::runtime_error& broken) {
-      diagnostics.error(node.place, fmt::format("<{}>: {}", node.kind, broken.what()));
-    }
   }
 }
 
@@ -221,7 +151,7 @@ Plan plan_all(ExperimentConfig experiment, Diagnostics& diagnostics) {
   check_unused(plan.experiment, diagnostics);
   Declarations declarations = declare(plan.experiment, diagnostics);
   Planner(declarations, plan, diagnostics).make_nodes();
-  check_nodes(plan, written_elements(declarations), diagnostics);
+  check_nodes(declarations, plan, diagnostics);
   compute_keys(plan, diagnostics);
   if (diagnostics.size() == before) resolve_elements(declarations, plan.experiment);
   return plan;

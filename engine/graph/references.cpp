@@ -28,7 +28,10 @@ class ReferenceReader {
       if (given == nullptr) continue;
       DeclaredReference reference{&parameter, {}};
       std::set<std::string_view> seen;
-      for (const std::string_view id : split_list(given->value)) {
+      const std::vector<std::string_view> ids = split_list(given->value);
+      if (parameter.type == ValueType::reference && ids.size() > 1) continue;  // reported
+      for (const std::string_view id : ids) {
+        if (id.empty()) continue;  // reported, as in all lists
         const Place place = place_of_item(*given, id, element);
         const auto target = by_id_.find(id);
         if (target == by_id_.end()) {
@@ -96,6 +99,12 @@ class ReferenceReader {
   }
 
   void unknown(const ParameterInfo& parameter, std::string_view id, const Place& place) {
+    if (const auto off = declarations_.left_out.find(id); off != declarations_.left_out.end()) {
+      const Place& there = off->second;
+      diagnostics_.error(place, fmt::format("'{}' names '{}', which is left out here", parameter.name, id),
+                         {}, {fmt::format("by a condition, at {}:{}", there.file->path, there.line)});
+      return;
+    }
     std::vector<std::string> all;
     for (const DeclaredNode& node : declarations_.nodes) all.push_back(node.id);
     const std::vector<std::string> fitting = makers(parameter.artifact);

@@ -29,6 +29,8 @@ class Exporter {
   virtual std::string extension() const = 0;  ///< of its files, without the point
   /// True when its output is no text.
   virtual bool binary() const { return false; }
+  /// Throws std::invalid_argument when the format cannot name a policy so.
+  virtual void check_name(const std::string& /*name*/) const {}
   /// The file's content; equal policies give equal bytes. Throws std::invalid_argument saying what of the
   /// policy the format cannot express.
   virtual std::string write(const ExportedPolicy& policy) const = 0;

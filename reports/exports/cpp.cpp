@@ -174,11 +174,13 @@ std::string struct_act(const ExportedPolicy& policy) {
 class CppExporter : public Exporter {
  public:
   std::string extension() const override { return "h"; }
+  void check_name(const std::string& name) const override {
+    if (identifiers({{name, "", 0, 0}}).front() == name) return;
+    throw std::invalid_argument(
+        fmt::format("'{}' has a meaning of its own in C++: give the export another name", name));
+  }
   std::string write(const ExportedPolicy& policy) const override {
-    if (identifiers({{policy.name, "", 0, 0}}).front() != policy.name) {
-      throw std::invalid_argument(
-          fmt::format("'{}' has a meaning of its own in C++: give the export another name", policy.name));
-    }
+    check_name(policy.name);
     std::string guard = policy.name;
     for (char& c : guard) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
     const Space& states = policy.spaces.states;

@@ -29,20 +29,26 @@ struct CollectNode : Node {
       throw std::invalid_argument(
           "give either episodes, with a policy, or samples, a number of uniformly drawn transitions");
     }
+    Rules rules;
     if ((episodes > 0) == policy.id.empty()) {
-      throw std::invalid_argument(episodes > 0 ? "episodes need a policy"
-                                               : "samples are drawn uniformly, without a policy");
+      if (episodes > 0)
+        rules.broken("episodes", "episodes need a policy");
+      else
+        rules.broken("policy", "samples are drawn uniformly, without a policy");
     }
-    if (samples > 0 && horizon) throw std::invalid_argument("uniform samples are single steps: no horizon");
+    if (samples > 0 && horizon) rules.broken("horizon", "uniform samples are single steps: no horizon");
+    rules.enforce();
   }
 
   void check(const NodeContext& context) const override {
     const auto target = load_problem(context.inputs("problem").front());
+    Rules rules;
     if (episodes > 0) {
-      load_policy(context.inputs("policy").front(), *target);
+      rules.check("policy", [&] { load_policy(context.inputs("policy").front(), *target); });
     } else {
-      check_uniform(*target);
+      check_uniform(*target, rules);
     }
+    rules.enforce();
   }
 
   std::vector<std::string> dataset_columns(const NodeContext& context) const override {
@@ -118,15 +124,15 @@ struct CollectNode : Node {
     return draws.uniform(purpose, axes[d].low, axes[d].high, static_cast<std::uint32_t>(d));
   }
 
-  static void check_uniform(const Problem& target) {
+  static void check_uniform(const Problem& target, Rules& rules) {
     if (target.simulator() == nullptr) {
-      throw std::invalid_argument("the problem only offers episodes: it cannot be set to uniform samples");
+      rules.broken("problem", "the problem only offers episodes: it cannot be set to uniform samples");
     }
-    const auto bounded = [](const Space& axes, std::string_view what) {
+    const auto bounded = [&](const Space& axes, std::string_view what) {
       for (const Axis& axis : axes) {
         if (std::isfinite(axis.low) && std::isfinite(axis.high)) continue;
-        throw std::invalid_argument(
-            fmt::format("'{}' of {} has no limits: uniform samples need them", axis.name, what));
+        rules.broken("problem",
+                     fmt::format("'{}' of {} has no limits: uniform samples need them", axis.name, what));
       }
     };
     bounded(target.spaces().states, "the state");

@@ -56,13 +56,14 @@ Matrix read_columns(const std::vector<InputNode>& datasets, const std::vector<st
 }
 
 void check_columns(const std::vector<InputNode>& datasets, const std::string& parameter,
-                   const std::vector<std::string>& names, Diagnostics& mistakes) {
+                   const std::vector<std::string>& names, Rules& rules) {
   for (const InputNode& data : datasets) {
     const std::vector<std::string>& known = data.columns;
     for (const std::string& column : names) {
       if (known.empty() || std::find(known.begin(), known.end(), column) != known.end()) continue;
-      mistakes.error({}, fmt::format("{}: the dataset '{}' has no column '{}'", parameter, data.id, column),
-                     suggestion(column, known));
+      rules.broken(parameter,
+                   fmt::format("{}: the dataset '{}' has no column '{}'", parameter, data.id, column),
+                   suggestion(column, known));
     }
   }
 }

@@ -12,9 +12,9 @@ namespace coppice {
 /// column for a cell that is no number, and when there are no rows.
 Matrix read_columns(const std::vector<InputNode>& datasets, const std::vector<std::string>& names);
 
-/// Adds a mistake for each column that a dataset has not, as far as its columns are known. `parameter` is
+/// A rule is broken by each column that a dataset has not, as far as its columns are known. `parameter` is
 /// where the user named them.
 void check_columns(const std::vector<InputNode>& datasets, const std::string& parameter,
-                   const std::vector<std::string>& names, Diagnostics& mistakes);
+                   const std::vector<std::string>& names, Rules& rules);
 
 }  // namespace coppice

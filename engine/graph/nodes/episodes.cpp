@@ -97,4 +97,12 @@ void EpisodeRun::finish() {
   }
 }
 
+void require_other_draws(const InputNode& policy, const NodeContext& judge) {
+  if (std::find(policy.streams.begin(), policy.streams.end(), judge.stream()) == policy.streams.end()) return;
+  throw std::invalid_argument(
+      fmt::format("policy '{}' was made with the very draws ({}) that would judge it; give this node a "
+                  "seed_label of its own",
+                  policy.id, judge.stream()));
+}
+
 }  // namespace coppice

@@ -46,4 +46,7 @@ class EpisodeRun {
   Returns returns_;
 };
 
+/// Throws std::invalid_argument when the policy was made with the draws of the node that judges it.
+void require_other_draws(const InputNode& policy, const NodeContext& judge);
+
 }  // namespace coppice

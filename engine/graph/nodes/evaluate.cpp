@@ -54,13 +54,10 @@ struct EvaluateNode : Node {
   void check(const NodeContext& context) const override {
     const auto target = load_problem(context.inputs("problem").front());
     const InputNode& policy = context.inputs("policies").front();
-    load_policy(policy, *target);
-    if (std::find(policy.streams.begin(), policy.streams.end(), context.stream()) != policy.streams.end()) {
-      throw std::invalid_argument(
-          fmt::format("policy '{}' was made with the very draws ({}) that would judge it; give this node a "
-                      "seed_label of its own",
-                      policy.id, context.stream()));
-    }
+    Rules rules;
+    rules.check("policies", [&] { load_policy(policy, *target); });
+    rules.check("policies", [&] { require_other_draws(policy, context); });
+    rules.enforce();
   }
 
   void run(NodeContext& context) const override {

@@ -29,8 +29,12 @@ struct ExportNode : Node {
   }
 
   void check() const {
-    make_exporter(to);
-    check_export_name(name);
+    Rules rules;
+    const bool well_named = rules.check("name", [&] { check_export_name(name); });
+    std::shared_ptr<const Exporter> exporter;
+    rules.check("to", [&] { exporter = make_exporter(to); });
+    if (exporter && well_named) rules.check("name", [&] { exporter->check_name(name); });
+    rules.enforce();
   }
 
   /// What was not learned in this experiment is tried when planning.
@@ -45,7 +49,9 @@ struct ExportNode : Node {
       content.component = input.element->children.front();
     }
     if (input.spaces) content.spaces = *input.spaces;
-    exported(content, input.id);
+    Rules rules;
+    rules.check("policy", [&] { exported(content, input.id); });
+    rules.enforce();
   }
 
   void run(NodeContext& context) const override {

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
+#include <set>
+#include <string_view>
 
 #include "engine/data/table_file.h"
 #include "engine/graph/artifacts.h"
@@ -64,22 +65,24 @@ struct FitNode : Node {
   }
 
   void check() const {
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-      const bool again = std::find(inputs.begin(), inputs.begin() + static_cast<std::ptrdiff_t>(i),
-                                   inputs[i]) != inputs.begin() + static_cast<std::ptrdiff_t>(i);
-      if (again) throw std::invalid_argument(fmt::format("the input '{}' stands twice", inputs[i]));
-      if (inputs[i] == output) throw std::invalid_argument(fmt::format("'{}' is input and output", output));
+    Rules rules;
+    std::set<std::string_view> before;
+    for (const std::string& input : inputs) {
+      if (!before.insert(input).second)
+        rules.broken("inputs", fmt::format("the input '{}' stands twice", input));
+      if (input == output) rules.broken("output", fmt::format("'{}' is input and output", output));
     }
+    rules.enforce();
   }
 
   void check(const NodeContext& context) const override {
-    Diagnostics mistakes;
+    Rules rules;
     for (const std::string_view parameter : {"samples", "test"}) {  // each must have every column
-      check_columns(context.inputs(parameter), "inputs", inputs, mistakes);
-      check_columns(context.inputs(parameter), "output", {output}, mistakes);
+      check_columns(context.inputs(parameter), "inputs", inputs, rules);
+      check_columns(context.inputs(parameter), "output", {output}, rules);
     }
-    if (!test.id.empty()) check_test(context, mistakes);
-    mistakes.throw_if_any();
+    if (!test.id.empty()) check_test(context, rules);
+    rules.enforce();
   }
   void run(NodeContext& context) const override {
     const Samples training = read_samples(context.inputs("samples"), inputs, output);
@@ -125,14 +128,13 @@ struct FitNode : Node {
 
  private:
   /// A test on what was trained on measures nothing.
-  static void check_test(const NodeContext& context, Diagnostics& mistakes) {
+  static void check_test(const NodeContext& context, Rules& rules) {
     for (const InputNode& train : context.inputs("samples")) {
       for (const InputNode& judge : context.inputs("test")) {
         const std::string origin = common_origin(train, judge);
         if (origin.empty()) continue;
-        mistakes.error(
-            {}, fmt::format("samples '{}' and test '{}' {}", train.id, judge.id, origin),
-            judge.streams.empty() ? "" : fmt::format("give '{}' a seed_label of its own", judge.id));
+        rules.broken("test", fmt::format("samples '{}' and test '{}' {}", train.id, judge.id, origin),
+                     judge.streams.empty() ? "" : fmt::format("give '{}' a seed_label of its own", judge.id));
         return;
       }
     }

@@ -55,10 +55,11 @@ struct OptimizeNode : Node {
 
   void check() const {
     if (!of_objective()) {
-      if (problem.id.empty() || policy.id.empty() || free.empty()) {
-        throw std::invalid_argument("give a problem, a policy and its parameters to tune, or an objective");
-      }
-      if (stop_gap) throw std::invalid_argument("stop_gap is of objectives, whose optimum is known");
+      Rules rules;
+      if (problem.id.empty() || policy.id.empty() || free.empty())
+        rules.broken("", "give a problem, a policy and its parameters to tune, or an objective");
+      if (stop_gap) rules.broken("stop_gap", "stop_gap is of objectives, whose optimum is known");
+      rules.enforce();
       return;
     }
     const PolicyTrial unused;
@@ -69,10 +70,21 @@ struct OptimizeNode : Node {
     }
   }
   void check(const NodeContext& context) const override {
-    const auto sought = target(context);
-    if (stop_gap && !sought->optimum()) {
-      throw std::invalid_argument("stop_gap is of objectives whose optimum is known");
+    Rules rules;
+    if (!of_objective()) {
+      rules.check("policy", [&] {
+        configured_policy(context);
+        load_policy(context.inputs("policy").front(), *load_problem(context.inputs("problem").front()));
+      });
+      rules.enforce();
     }
+    std::unique_ptr<const SearchTarget> sought;
+    rules.check(of_objective() ? "objective" : "parameters", [&] { sought = target(context); });
+    rules.enforce();
+    if (stop_gap && !sought->optimum())
+      rules.broken("stop_gap", "stop_gap is of objectives whose optimum is known");
+    rules.check("", [&] { optimizer->start(task(*sought, context)); });
+    rules.enforce();
     optimizer->start(task(*sought, context));
   }
 
@@ -143,20 +155,22 @@ struct OptimizeNode : Node {
  private:
   bool of_objective() const { return !objective.id.empty(); }
 
+  static const Element& configured_policy(const NodeContext& context) {
+    const InputNode& node = context.inputs("policy").front();
+    if (node.kind == "policy" && !node.element->children.empty()) return node.element->children.front();
+    throw std::invalid_argument(
+        fmt::format("policy '{}' is not configured in a policy node, but learned or read from a file: it has "
+                    "no parameters to tune",
+                    node.id));
+  }
+
   std::unique_ptr<const SearchTarget> target(const NodeContext& context) const {
     if (of_objective()) {
       const Sub<Objective> family = load_objective(context.inputs("objective").front());
       return std::make_unique<ObjectiveTarget>(*family, context.draws());
     }
-    const InputNode& node = context.inputs("policy").front();
-    if (node.kind != "policy" || node.element->children.empty()) {
-      throw std::invalid_argument(fmt::format(
-          "policy '{}' is not configured in a policy node, but learned or read from a file: it has no "
-          "parameters to tune",
-          node.id));
-    }
     return std::make_unique<PolicyTarget>(
-        TunedPolicy(node.element->children.front(), free), load_problem(context.inputs("problem").front()),
+        TunedPolicy(configured_policy(context), free), load_problem(context.inputs("problem").front()),
         PolicyTrial{episodes, horizon, discount, criterion}, context.draws().fork("evaluations"));
   }
 

@@ -28,12 +28,14 @@ struct PolicyNode : Node {
   }
 
   void check(const NodeContext& context) const override {
-    if (problem.id.empty()) {
-      if (!file.path.empty()) make_policy(read_policy_file(file.path));
-    } else {
-      const InputNode& input = context.inputs("problem").front();
-      content(*load_problem(input), context.key());
+    Rules rules;
+    if (!problem.id.empty()) {
+      rules.check(file.path.empty() ? "" : "file",
+                  [&] { content(*load_problem(context.inputs("problem").front()), context.key()); });
+    } else if (!file.path.empty()) {
+      rules.check("file", [&] { make_policy(read_policy_file(file.path)); });
     }
+    rules.enforce();
   }
 
   std::shared_ptr<const Spaces> spaces(const NodeContext& context) const override {

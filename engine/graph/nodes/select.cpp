@@ -31,15 +31,12 @@ struct SelectNode : Node {
 
   void check(const NodeContext& context) const override {
     const auto target = load_problem(context.inputs("problem").front());
+    Rules rules;
     for (const InputNode& policy : context.inputs("policies")) {
-      load_policy(policy, *target);
-      if (std::find(policy.streams.begin(), policy.streams.end(), context.stream()) == policy.streams.end())
-        continue;
-      throw std::invalid_argument(
-          fmt::format("policy '{}' was made with the very draws ({}) that would judge it; give this node a "
-                      "seed_label of its own",
-                      policy.id, context.stream()));
+      rules.check("policies", [&] { load_policy(policy, *target); });
+      rules.check("policies", [&] { require_other_draws(policy, context); });
     }
+    rules.enforce();
   }
 
   std::shared_ptr<const Spaces> spaces(const NodeContext& context) const override {

@@ -89,11 +89,15 @@ struct TrainNode : Node {
 
   void check(const NodeContext& context) const override {
     const auto target = load_problem(context.inputs("problem").front());
-    check_needs(*target);
-    check_samples(context.inputs("samples"));
-    if (!policy.id.empty()) load_policy(context.inputs("policy").front(), *target);
-    for (const InputNode& node : context.inputs("samples")) require_samples_of(node, *target);
-    solver->check(target->spaces(), !value.id.empty());
+    Rules rules;
+    check_needs(*target, rules);
+    check_samples(context.inputs("samples"), rules);
+    if (!policy.id.empty())
+      rules.check("policy", [&] { load_policy(context.inputs("policy").front(), *target); });
+    for (const InputNode& node : context.inputs("samples"))
+      rules.check("samples", [&] { require_samples_of(node, *target); });
+    rules.check("", [&] { solver->check(target->spaces(), !value.id.empty()); });
+    rules.enforce();
   }
 
   std::shared_ptr<const Spaces> spaces(const NodeContext& context) const override {
@@ -131,50 +135,48 @@ struct TrainNode : Node {
 
  private:
   /// All that the solver lacks, and all that it would not look at.
-  void check_needs(const Problem& target) const {
+  void check_needs(const Problem& target, Rules& rules) const {
     const Solver::Needs needs = solver->needs();
     const std::string& name = solver.resolved.name;
-    Diagnostics mistakes;
     if (needs.samples && samples.empty()) {
-      mistakes.error({}, fmt::format("<{}> learns from samples", name),
-                     "give samples=\"...\", a collect or dataset node");
+      rules.broken("", fmt::format("<{}> learns from samples", name),
+                   "give samples=\"...\", a collect or dataset node");
     }
     if (needs.simulator && target.simulator() == nullptr) {
-      mistakes.error({}, fmt::format("<{}> needs a problem that can be set to any state; '{}' only offers "
-                                     "episodes",
-                                     name, problem.id));
+      rules.broken("problem", fmt::format("<{}> needs a problem that can be set to any state; '{}' only "
+                                          "offers episodes",
+                                          name, problem.id));
     }
     const std::size_t actions = target.spaces().actions.size();
     if (needs.single_action && actions != 1) {
-      mistakes.error({}, fmt::format("<{}> can choose the parameters of one action; '{}' has {} actions",
-                                     name, problem.id, actions));
+      rules.broken("problem", fmt::format("<{}> can choose the parameters of one action; '{}' has {} actions",
+                                          name, problem.id, actions));
     }
     const std::string takes =
         fmt::format("<{}> takes problem, samples{}{}", name, needs.uses_value ? ", value" : "",
                     needs.uses_policy ? ", policy" : "");
     const auto refuse = [&](bool used, std::string_view parameter, const Reference& given) {
       if (used || given.id.empty()) return;
-      mistakes.error({}, fmt::format("<{}> makes no use of {}=\"{}\"", name, parameter, given.id), takes);
+      rules.broken(parameter, fmt::format("<{}> makes no use of {}=\"{}\"", name, parameter, given.id),
+                   takes);
     };
     refuse(needs.uses_value, "value", value);
     refuse(needs.uses_policy, "policy", policy);
-    mistakes.throw_if_any();
   }
 
   /// Episodes that are there twice would count twice.
-  static void check_samples(const std::vector<InputNode>& nodes) {
-    Diagnostics mistakes;
+  static void check_samples(const std::vector<InputNode>& nodes, Rules& rules) {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
         const std::string origin = common_origin(nodes[j], nodes[i]);
         if (origin.empty()) continue;
         const std::string hint =
             nodes[i].streams.empty() ? "" : fmt::format("give '{}' a seed_label of its own", nodes[i].id);
-        mistakes.error({}, fmt::format("samples '{}' and '{}' {}", nodes[j].id, nodes[i].id, origin), hint);
+        rules.broken("samples", fmt::format("samples '{}' and '{}' {}", nodes[j].id, nodes[i].id, origin),
+                     hint);
         break;
       }
     }
-    mistakes.throw_if_any();
   }
 
   Dataset gather(const NodeContext& context, const Spaces& spaces) const {

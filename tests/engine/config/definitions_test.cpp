@@ -270,6 +270,8 @@ TEST(Overrides, CannotSweepUnderATakenName) {
   EXPECT_EQ(nodes_text(outcome.config), "") << "no nodes at points that are not there, to be wrong in turn";
   EXPECT_EQ(bad(R"(<arg name="s" default="1"/>)", {"s:=1,1"}).message,
             "the argument 's' is given a value twice");
+  for (const char* given : {"s:=1,", "s:=1,,2", "s:=,1"})
+    EXPECT_EQ(bad(R"(<arg name="s" default="1"/>)", {given}).message, "'s' has an empty item") << given;
   EXPECT_EQ(
       bad(R"(<arg name="a" default="1"/><group if="${a == 1}"><arg name="b" default="1"/></group>)",
           {"b:=1,2", "a:=2,1"})

@@ -24,11 +24,12 @@ TEST(UnusedParts, WordsThatExistPass) {
                  "<exclude when=\"${w gt 2}\"/></sweep>"
                  "<problem id=\"p\" over=\"S\"><double_integrator cost=\"${w}\"/></problem></group>"),
             "");
-  EXPECT_EQ(said("<macro name=\"m\" params=\"a, b:=${a}, *c\" doc=\"d\">"
-                 "<collect id=\"${a}\" problem=\"p\" samples=\"${b}\" horizon=\"${w}\"/>"
-                 "<train id=\"t\"><insert block=\"c\"/></train><extra_trees trees=\"5\"/></macro>"
-                 "<sweep id=\"S\"><list><point w=\"1\"/></list></sweep>"),
-            "");
+  EXPECT_EQ(
+      said("<macro name=\"m\" params=\"a, b:=${a}, *c\" doc=\"d\">"
+           "<collect id=\"${a}\" problem=\"p\" samples=\"${b}\" horizon=\"${w}\"/>"
+           "<train id=\"t\" problem=\"p\"><insert block=\"c\"/></train><extra_trees trees=\"5\"/></macro>"
+           "<sweep id=\"S\"><list><point w=\"1\"/></list></sweep>"),
+      "");
 }
 
 TEST(UnusedParts, PartsOfComponentsAndSweepsKnowWhereTheyStand) {
@@ -38,6 +39,14 @@ TEST(UnusedParts, PartsOfComponentsAndSweepsKnowWhereTheyStand) {
                    "<param if=\"false\" name=\"b\" value=\"1\"/></grid></sweep>"),
               HasSubstr("<param> has no attribute 'value'"));
   EXPECT_THAT(said("<let if=\"false\" name=\"a\" valu=\"1\"/>"), HasSubstr("<let> has no attribute 'valu'"));
+}
+
+TEST(UnusedParts, MissWhatTheyWouldNeed) {
+  EXPECT_THAT(said("<macro name=\"m\"><train id=\"t\"><fqi/></train><insert/></macro>"),
+              AllOf(HasSubstr("<train> needs 'problem'"), HasSubstr("<insert> needs the attribute 'block'")));
+  EXPECT_THAT(said("<evaluate if=\"false\" id=\"e\" problem=\"p\" policies=\"q\"/>"),
+              HasSubstr("<evaluate> needs 'episodes'"));
+  EXPECT_THAT(said("<let if=\"false\" name=\"a\"/>"), HasSubstr("<let> needs the attribute 'value'"));
 }
 
 TEST(UnusedParts, NamesAreThoseOfAllFilesWhateverTheirConditions) {
