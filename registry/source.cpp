@@ -90,7 +90,8 @@ class Builder {
     for (const auto* attribute = parsed.FirstAttribute(); attribute != nullptr;
          attribute = attribute->Next(), ++i) {
       const ScannedAttribute& place = tag.attributes.at(i);
-      element.attributes.push_back({attribute->Name(), attribute->Value(), place.name, place.value});
+      element.attributes.push_back(
+          {attribute->Name(), attribute->Value(), place.name, place.value, place.failed});
     }
     for (const auto* child = parsed.FirstChildElement(); child != nullptr;
          child = child->NextSiblingElement()) {

@@ -135,7 +135,7 @@ class Scanner {
   void scan_end_tag();
   void scan_start_tag();
   void scan_attribute(ScannedTag& tag, std::string_view element, std::vector<std::string_view>& names);
-  Place scan_value(std::string_view attribute);
+  void scan_value(std::string_view name, ScannedAttribute& attribute);
   std::string unexpected(std::string_view element) const;
   void check_reference(std::size_t begin, std::size_t end);
 
@@ -190,14 +190,15 @@ void Scanner::scan_markup() {
 
 void Scanner::scan_comment() {
   const std::size_t begin = at_;
+  const int line = place(begin, 4).line;
+  const std::size_t close = text_.find("-->", begin + 4);
+  if (close == std::string_view::npos) fail(place(begin, 4), "the comment is never closed", "--> is missing");
   const std::size_t dashes = text_.find("--", begin + 4);
-  if (dashes == std::string_view::npos)
-    fail(place(begin, 4), "the comment is never closed", "--> is missing");
-  if (!text_.substr(dashes).starts_with("-->")) {
-    fail(place(dashes, 2), "'--' may not stand inside a comment", "a comment ends in -->",
-         {fmt::format("the comment begins at line {}", place(begin, 4).line)});
+  if (dashes < close) {
+    diagnostics_.error(place(dashes, 2), "'--' may not stand inside a comment", "a comment ends in -->",
+                       {fmt::format("the comment begins at line {}", line)});
   }
-  at_ = dashes + 3;
+  at_ = close + 3;
   blank_out(begin, at_);
 }
 
@@ -326,31 +327,37 @@ void Scanner::scan_attribute(ScannedTag& tag, std::string_view element,
     fail(attribute.name, fmt::format("the value of '{}' is not in quotes", name),
          fmt::format("{}=\"...\"", name));
   }
-  attribute.value = scan_value(name);
+  scan_value(name, attribute);
   if (twice) return blank_out(begin, at_);
   tag.attributes.push_back(std::move(attribute));
 }
 
 /// At the opening quote; ends after the closing one.
-Place Scanner::scan_value(std::string_view attribute) {
+void Scanner::scan_value(std::string_view name, ScannedAttribute& attribute) {
   const std::size_t quote = at_;
   const std::size_t end = text_.find(text_[quote], quote + 1);
   const std::size_t bad = text_.find('<', quote + 1);
   const std::string_view before_bad = text_.substr(quote, std::min(bad, text_.size()) - quote);
   if (end == std::string_view::npos || (bad < end && before_bad.find('\n') != std::string_view::npos)) {
-    fail(place(quote, 1), fmt::format("the value of '{}' has no closing quote", attribute));
+    fail(place(quote, 1), fmt::format("the value of '{}' has no closing quote", name));
   }
-  const Place value = place(quote + 1, end - quote - 1);
+  attribute.value = place(quote + 1, end - quote - 1);
   for (std::size_t i = quote + 1; i < end; ++i) {
     if (text_[i] == '<') {
-      diagnostics_.error(place(i, 1), fmt::format("'<' inside the value of '{}'", attribute),
+      diagnostics_.error(place(i, 1), fmt::format("'<' inside the value of '{}'", name),
                          "it is written &lt;");
     }
-    if (text_[i] == '&') check_reference(i, end);
+    const std::size_t before = diagnostics_.size();
+    if (text_.substr(i, end - i).starts_with("&&")) {
+      diagnostics_.error(place(i, 2), "'&&' by itself", "in an expression it is written 'and'");
+      ++i;
+    } else if (text_[i] == '&') {
+      check_reference(i, end);
+    }
+    attribute.failed = attribute.failed || diagnostics_.size() != before;
     if (is_blank(text_[i])) xml_.text[i] = ' ';  // what XML demands of literal white space in a value
   }
   at_ = end + 1;
-  return value;
 }
 
 /// At '&' inside a value that goes up to `end`.
@@ -380,7 +387,7 @@ void Scanner::check_reference(std::size_t begin, std::size_t end) {
   const auto [stop, failure] = std::from_chars(digits.data(), last, code, hexadecimal ? 16 : 10);
   if (failure != std::errc{} || stop != last || !is_character(static_cast<char32_t>(code))) {
     diagnostics_.error(where, fmt::format("'&{};' is not a character", name));
-    xml_.text[begin] = '?';
+    xml_.text[begin] = '?';  // the parser would make something of it
   }
 }
 

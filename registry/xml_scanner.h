@@ -12,6 +12,7 @@ namespace coppice {
 /// text.
 struct ScannedAttribute {
   Place name, value;
+  bool failed = false;  ///< its value is not known, which was reported
 };
 
 /// Where a start tag stands: its name and its attributes, in the order of the text.

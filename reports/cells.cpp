@@ -40,7 +40,8 @@ void check_keys(const std::vector<Entry>& entries, const TableKeys& keys) {
   Rules rules;
   std::set<std::string> seen;
   for (const std::string& key : keys.all()) {
-    rules.check("", [&] {
+    const bool in_rows = std::find(keys.rows.begin(), keys.rows.end(), key) != keys.rows.end();
+    rules.check(in_rows ? keys.of_rows : keys.of_columns, [&] {
       if (std::find(known.begin(), known.end(), key) == known.end()) {
         throw std::invalid_argument(fmt::format("{}: nothing here has the column '{}'; {}", keys.parameters,
                                                 key, suggestion(key, known)));

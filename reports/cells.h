@@ -28,7 +28,8 @@ std::vector<Entry> entries_of(const std::vector<InputNode>& nodes);
 /// The keys of a table: names of labels, in the order of the columns.
 struct TableKeys {
   std::vector<std::string> rows, columns;
-  std::string parameters = "rows and columns";  ///< where the user wrote them, for messages
+  std::string parameters = "rows and columns";           ///< where the user wrote them, for messages
+  std::string of_rows = "rows", of_columns = "columns";  ///< the parameters that list them
   std::vector<std::string> all() const;
 };
 

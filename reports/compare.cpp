@@ -112,7 +112,7 @@ struct CompareNode : Node {
 
   Arrangement arranged(const NodeContext& context) const {
     Arrangement what;
-    what.cells = arrange(entries_of(context.inputs("of")), {within, by, "by and within"});
+    what.cells = arrange(entries_of(context.inputs("of")), {within, by, "by and within", "within", "by"});
     std::vector<std::string> names;
     const auto group = [&](std::size_t i) {
       const std::vector<std::string>& keys = what.cells[i].keys;

@@ -48,8 +48,9 @@ struct FigureNode : Node {
     std::optional<Source> source;
     rules.check("of", [&] { source = source_of(nodes); });
     if (source) check_source(*source, context, rules);
+    if (source && !(*source == Source::metrics && lacks_x()))
+      rules.check("by", [&] { groups(drawn(context)); });
     rules.enforce();
-    groups(drawn(context));
   }
 
   void run(NodeContext& context) const override {
@@ -114,9 +115,11 @@ struct FigureNode : Node {
     return source;
   }
 
+  /// Of metrics.
+  bool lacks_x() const { return kind == FigureKind::line && (x.empty() || is_time(x)); }
+
   /// That nothing is given which this kind of figure would not heed.
   void check_kind(Rules& rules) const {
-    if (kind != FigureKind::line && !x.empty()) rules.broken("x", "only a line has an x");
     if (kind != FigureKind::histogram && bins) rules.broken("bins", "only a histogram has bins");
     if (kind != FigureKind::profile && better != Direction::automatic) {
       rules.broken("better", "better: only of a profile does it matter which values are good");
@@ -133,12 +136,13 @@ struct FigureNode : Node {
       check_dataset_columns(nodes, rules);
       return check_dataset_columns(context.inputs("observations"), rules);
     }
+    if (kind != FigureKind::line && !x.empty()) rules.broken("x", "only a line has an x");
     std::optional<Metric> shown;
     rules.check("y", [&] { shown = metric(); });
     if (shown) rules.check("y", [&] { require_metric(nodes, *shown); });
     if (shown && kind == FigureKind::profile) rules.check("better", [&] { require_better(*shown, better); });
     if (kind == FigureKind::profile || kind == FigureKind::histogram) check_episodes(nodes, rules);
-    if (kind == FigureKind::line && (x.empty() || is_time(x))) {
+    if (lacks_x()) {
       rules.broken("x",
                    "give x, a column of a sweep; only learning nodes have a course over iterations or time");
     }
@@ -221,7 +225,7 @@ struct FigureNode : Node {
     return names;
   }
   std::vector<TableCell> groups(const std::vector<InputNode>& nodes) const {
-    return arrange(entries_of(nodes), {keys(nodes), {}, "by and x"});
+    return arrange(entries_of(nodes), {keys(nodes), {}, "by and x", "by", "by"});
   }
 
   Table data(const FigureInputs& inputs) const {

@@ -138,7 +138,7 @@ struct IohprofilerNode : Node {
 
  private:
   std::vector<TableCell> arranged(const NodeContext& context) const {
-    TableKeys keys{algorithm, function, "algorithm, function and dimension"};
+    TableKeys keys{algorithm, function, "algorithm, function and dimension", "algorithm", "function"};
     keys.columns.insert(keys.columns.end(), dimension.begin(), dimension.end());
     return arrange(entries_of(context.inputs("of")), keys);
   }

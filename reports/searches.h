@@ -37,7 +37,7 @@ struct SearchReport : Node {
   void check(const NodeContext& context) const override;
 
  protected:
-  TableKeys keys() const { return {rows, {}, "rows"}; }
+  TableKeys keys() const { return {rows, {}, "rows", "rows", "rows"}; }
 };
 
 /// Parameters of T, a SearchReport.

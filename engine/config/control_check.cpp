@@ -83,12 +83,32 @@ bool check_name(const std::string& name, const Place& place, Diagnostics& diagno
   return false;
 }
 
+bool check_required(const Element& element, const ControlElement& declaration, const Trace& trace,
+                    Diagnostics& diagnostics) {
+  const std::vector<std::string> known = attribute_names(declaration);
+  bool complete = true;
+  for (const auto& [name, doc] : declaration.attributes) {
+    const std::string required = name.substr(0, name.size() - 1);
+    if (!name.ends_with('!') || element.find(required) != nullptr) continue;
+    complete = false;
+    const auto misspelt = [&](const Attribute& given) {
+      return !contains(known, given.name) && !is_control_attribute(given.name) &&
+             nearest(given.name, known) == required;
+    };
+    if (std::any_of(element.attributes.begin(), element.attributes.end(), misspelt)) continue;
+    diagnostics.error(traced(element.place, trace),
+                      fmt::format("<{}> needs the attribute '{}'", element.name, required), doc);
+  }
+  return complete;
+}
+
 bool check_items(const Attribute& list, Diagnostics& diagnostics) {
   const std::vector<std::string> items = split_items(list.value);
   const std::vector<std::size_t> offsets = item_offsets(list.value);
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (!items[i].empty() || trim(list.value.substr(offsets[i])).substr(0, 1) == "'") continue;
-    Place place = place_in(list, offsets[i], 1);
+    const bool is_last = offsets[i] == list.value.size();  // behind the comma that makes it
+    Place place = place_in(list, is_last ? list.value.rfind(',') : offsets[i], 1);
     place.trace = list.value_place.trace;
     diagnostics.error(place, fmt::format("'{}' has an empty item", list.name),
                       "values are separated by single commas");
@@ -100,15 +120,7 @@ bool check_items(const Attribute& list, Diagnostics& diagnostics) {
 bool check_control(const Element& element, const ControlElement& declaration, const Trace& trace,
                    Diagnostics& diagnostics) {
   check_attributes(element, declaration, trace, diagnostics);
-  bool complete = true;
-  for (const auto& [name, doc] : declaration.attributes) {
-    if (!name.ends_with('!')) continue;
-    const std::string required = name.substr(0, name.size() - 1);
-    if (element.find(required) != nullptr) continue;
-    complete = false;
-    diagnostics.error(traced(element.place, trace),
-                      fmt::format("<{}> needs the attribute '{}'", element.name, required), doc);
-  }
+  const bool complete = check_required(element, declaration, trace, diagnostics);
   for (const Element& child : element.children) {
     if (contains(declaration.children, "*") || contains(declaration.children, child.name)) continue;
     const std::string hint = declaration.children.empty() ? fmt::format("<{}> has no content", element.name)

@@ -18,6 +18,11 @@ const ControlElement& root_element();
 bool check_control(const Element& element, const ControlElement& declaration,
                    const std::shared_ptr<const TraceFrame>& trace, Diagnostics& diagnostics);
 
+/// Reports required attributes that are missing, unless an unknown one looks like a misspelling of them.
+/// False when any is missing.
+bool check_required(const Element& element, const ControlElement& declaration,
+                    const std::shared_ptr<const TraceFrame>& trace, Diagnostics& diagnostics);
+
 /// Letters, digits, '_' and '-': fit for the id of a node or a sweep, and so for a file name.
 bool is_id(const std::string& text);
 

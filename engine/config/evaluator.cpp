@@ -94,6 +94,7 @@ const TextTemplate& Evaluator::compiled(const Attribute& attribute) {
 }
 
 std::optional<Value> Evaluator::value(const Attribute& attribute, const Context& context) {
+  if (attribute.failed) return std::nullopt;
   std::vector<ExpressionError> errors;
   std::optional<Value> value = compiled(attribute).value(ContextNames(*this, attribute, context), errors);
   report(attribute, context, errors);
@@ -101,6 +102,7 @@ std::optional<Value> Evaluator::value(const Attribute& attribute, const Context&
 }
 
 std::optional<std::string> Evaluator::text(const Attribute& attribute, const Context& context) {
+  if (attribute.failed) return std::nullopt;
   if (attribute.value.find('$') == std::string::npos) return attribute.value;
   std::vector<ExpressionError> errors;
   std::optional<std::string> text = compiled(attribute).text(ContextNames(*this, attribute, context), errors);

@@ -39,6 +39,7 @@ class Merger {
       for (NodeElement& node : pass.nodes) add_node(std::move(node), combination);
     }
     for (UnusedPart& part : pass.unused) add_unused(std::move(part));
+    experiment_.left_out.insert(experiment_.left_out.end(), pass.left_out.begin(), pass.left_out.end());
     experiment_.arguments.merge(pass.arguments);
     experiment_.complete = experiment_.complete && pass.complete;
   }

@@ -58,8 +58,7 @@ void Expander::element(const Element& element, const Context& context, Element* 
   count(element, context);
   // The conditions of a node over sweeps may depend on their columns: they are worked out at each point.
   const bool over_sweeps = parent == nullptr && !is_control(element.name) && element.find("over") != nullptr;
-  if (!over_sweeps && !wanted(element, context))
-    return keep_unused(element, context, parent == nullptr ? "" : parent->name);
+  if (!over_sweeps && !wanted(element, context)) return skip(element, context, parent);
   if (parent != nullptr && parent == sweep_ && element.name == "exclude") {
     exclusions_->push_back({&element, context});  // its condition is worked out at each point
     return;
@@ -167,6 +166,25 @@ bool Expander::global_only(const Element& element, const Context& context) {
 void Expander::error(const Place& place, const Context& context, std::string message, std::string hint,
                      std::vector<std::string> notes) {
   diagnostics_.error(traced(place, context), std::move(message), std::move(hint), std::move(notes));
+}
+
+void Expander::skip(const Element& element, const Context& context, const Element* parent) {
+  if (parent == nullptr) note_left_out(element, context);
+  keep_unused(element, context, parent == nullptr ? "" : parent->name);
+}
+
+void Expander::note_left_out(const Element& element, const Context& context) {
+  if (element.name == "group") {
+    for (const Element& child : element.children) note_left_out(child, context);
+  } else if (const Attribute* id = element.find("id")) {
+    result_.left_out.push_back({element.name, quiet_text(*id, context), element.place});
+  }
+}
+
+/// The attribute's value; empty, and nothing is said, where it cannot be worked out.
+std::string Expander::quiet_text(const Attribute& attribute, const Context& context) const {
+  Diagnostics ignored;
+  return Evaluator(files_, ignored).text(attribute, context).value_or("");
 }
 
 void Expander::keep_unused(const Element& element, const Context& context, std::string parent) {

@@ -21,6 +21,7 @@ struct Expansion {
   std::vector<NodeElement> nodes;
   std::map<std::string, std::string> arguments;
   std::vector<UnusedPart> unused;
+  std::vector<LeftOut> left_out;
   bool complete = true;
 };
 
@@ -87,6 +88,10 @@ class Expander {
   bool global_only(const Element& element, const Context& context);
   void error(const Place& place, const Context& context, std::string message, std::string hint = {},
              std::vector<std::string> notes = {});
+  /// Notes what a condition leaves out.
+  void skip(const Element& element, const Context& context, const Element* parent);
+  void note_left_out(const Element& element, const Context& context);
+  std::string quiet_text(const Attribute& attribute, const Context& context) const;
   /// Keeps what is left out, for check_unused.
   void keep_unused(const Element& element, const Context& context, std::string parent);
   void finish_unused(const LoadedFile& file);
@@ -101,6 +106,7 @@ class Expander {
   std::optional<Value> argument_value(const Element& element, const std::string& name,
                                       const Context& context);
   std::optional<Value> given_value(const Element& element, GivenArgument& given, const Context& context);
+  void check_values(const Element& element, const Context& context);
   std::optional<Value> checked(const Element& element, const Attribute& source, std::optional<Value> value,
                                const Context& context);
   std::optional<Value> typed(const Element& element, const Attribute& source, const Value& value,
@@ -140,7 +146,7 @@ class Expander {
   void node(const Element& element, const Context& context);
   void node_over_sweeps(const Element& element, const Context& context);
   bool left_out_with_its_sweeps(const Element& element, Context context);
-  const Element* sweep_left_out(const std::string& id) const;
+  const LeftOut* sweep_left_out(const std::string& id) const;
   std::vector<DefinedSweep*> sweeps_of(const Element& element, Context& context);
   bool check_shared_columns(const Attribute& over, const std::vector<DefinedSweep*>& sweeps,
                             const Context& context);

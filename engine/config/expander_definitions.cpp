@@ -6,6 +6,7 @@
 #include <set>
 #include <string_view>
 
+#include "engine/config/attribute_place.h"
 #include "engine/config/control_check.h"
 #include "engine/config/expander.h"
 #include "registry/suggest.h"
@@ -65,6 +66,7 @@ void Expander::argument(const Element& element, const Context& context) {
   for (PassedArguments* passed = context.passed; passed != nullptr; passed = passed->outer) {
     passed->declared.push_back(name.value);
   }
+  check_values(element, context);
   std::optional<Value> value;
   // What looks like a missing default may be the attribute that was misspelt.
   if (sound || element.find("default") != nullptr) value = argument_value(element, name.value, context);
@@ -109,6 +111,24 @@ std::optional<Value> Expander::given_value(const Element& element, GivenArgument
     if (i == given.chosen) chosen = std::move(value);
   }
   return chosen;
+}
+
+/// Reports what no list of values has: nothing, an empty item, an item twice.
+void Expander::check_values(const Element& element, const Context& context) {
+  const Attribute* attribute = element.find("values");
+  if (attribute == nullptr) return;
+  Attribute values = *attribute;
+  values.value_place = traced(attribute->value_place, context);
+  const std::vector<std::string> texts = split_items(values.value);
+  if (texts.empty())
+    diagnostics_.error(values.value_place, "'values' is empty", "values are separated by commas");
+  if (!check_items(values, diagnostics_)) return;
+  std::set<std::string_view> seen;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (seen.insert(texts[i]).second) continue;
+    const Place place = place_in(values, item_offsets(values.value)[i], texts[i].size());
+    error(place, context, fmt::format("'values' has '{}' twice", texts[i]));
+  }
 }
 
 /// The value that `source` gives, if there is one and the declaration allows it.
@@ -178,15 +198,8 @@ bool Expander::allowed(const Element& element, const Attribute& source, const Va
                        const Context& context) {
   const Attribute* attribute = element.find("values");
   if (attribute == nullptr) return true;
-  Attribute values = *attribute;
-  values.value_place = traced(attribute->value_place, context);
-  check_items(values, diagnostics_);
   const std::vector<std::string> texts = split_items(attribute->value);
-  std::set<std::string_view> seen;
-  for (const std::string& text : texts) {
-    if (!seen.insert(text).second)
-      error(attribute->value_place, context, fmt::format("'values' has '{}' twice", text));
-  }
+  if (texts.empty()) return true;  // reported
   const bool listed = std::any_of(texts.begin(), texts.end(), [&](const std::string& text) {
     return equal(value, Value::inferred(text)).value_or(false);
   });

@@ -49,7 +49,7 @@ void Expander::node(const Element& element, const Context& context) {
 void Expander::node_over_sweeps(const Element& element, const Context& context) {
   Context inner = context;
   inner.inside = true;
-  if (left_out_with_its_sweeps(element, inner)) return keep_unused(element, context, "");
+  if (left_out_with_its_sweeps(element, inner)) return skip(element, context, nullptr);
   const std::vector<DefinedSweep*> sweeps = sweeps_of(element, inner);
   std::optional<Attribute> id;
   if (const Attribute* raw = element.find("id")) id = evaluator_.attribute(*raw, inner);
@@ -77,7 +77,7 @@ void Expander::node_over_sweeps(const Element& element, const Context& context) 
 bool Expander::left_out_with_its_sweeps(const Element& element, Context context) {
   const Attribute* over = element.find("over");
   if (over == nullptr || (element.find("if") == nullptr && element.find("unless") == nullptr)) return false;
-  const std::vector<std::string> ids = split_items(over->value);
+  const std::vector<std::string> ids = split_items(quiet_text(*over, context));
   const auto left_out = [&](const std::string& id) { return sweep_left_out(id) != nullptr; };
   if (std::none_of(ids.begin(), ids.end(), left_out)) return false;
   context.names_unknown = true;
@@ -85,12 +85,11 @@ bool Expander::left_out_with_its_sweeps(const Element& element, Context context)
 }
 
 /// The sweep of this id that a condition left out; null when there is none.
-const Element* Expander::sweep_left_out(const std::string& id) const {
-  if (sweeps_.contains(id)) return nullptr;
-  const auto found = std::find_if(result_.unused.begin(), result_.unused.end(), [&](const UnusedPart& part) {
-    return part.element.name == "sweep" && part.element.get("id") == id;
-  });
-  return found == result_.unused.end() ? nullptr : &found->element;
+const LeftOut* Expander::sweep_left_out(const std::string& id) const {
+  if (id.empty() || sweeps_.contains(id)) return nullptr;
+  const auto found = std::find_if(result_.left_out.begin(), result_.left_out.end(),
+                                  [&](const LeftOut& part) { return part.kind == "sweep" && part.id == id; });
+  return found == result_.left_out.end() ? nullptr : &*found;
 }
 
 /// The sweeps that `over` names. After a mistake, names that could be columns are no mistakes of their own.
@@ -100,9 +99,12 @@ std::vector<Expander::DefinedSweep*> Expander::sweeps_of(const Element& element,
   if (over == nullptr) return sweeps;
   const std::optional<std::string> text = evaluator_.text(*over, context);
   bool good = text.has_value();
-  const Attribute worked_out{over->name, text.value_or(""), over->name_place, over->value_place};
+  const Attribute worked_out{over->name, text.value_or(""), over->name_place,
+                             traced(over->value_place, context)};
   const std::vector<std::string> ids = split_items(worked_out.value);
+  good = good && (ids.empty() || check_items(worked_out, diagnostics_));
   for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (ids[i].empty()) continue;
     const auto found = sweeps_.find(ids[i]);
     const bool twice = found != sweeps_.end() &&
                        std::find(sweeps.begin(), sweeps.end(), found->second.get()) != sweeps.end();
@@ -113,10 +115,10 @@ std::vector<Expander::DefinedSweep*> Expander::sweeps_of(const Element& element,
           place_in(worked_out, item_offsets(worked_out.value)[i], std::max<std::size_t>(1, ids[i].size()));
       if (twice) {
         error(place, context, fmt::format("the sweep '{}' is named twice", ids[i]));
-      } else if (const Element* off = sweep_left_out(ids[i])) {
+      } else if (const LeftOut* off = sweep_left_out(ids[i])) {
         error(place, context, fmt::format("the sweep '{}' is left out here", ids[i]),
               "the node needs the same condition",
-              {fmt::format("by its condition at {}:{}", off->place.file->path, off->place.line)});
+              {fmt::format("by a condition, at {}:{}", off->place.file->path, off->place.line)});
       } else {
         error(place, context, fmt::format("there is no sweep '{}'", ids[i]),
               known.empty() ? "no sweep is defined before this node" : suggestion(ids[i], known));

@@ -58,6 +58,13 @@ struct UnusedPart {
   bool names_known = false;        ///< and there can be no others
 };
 
+/// A node or a sweep that a condition left out.
+struct LeftOut {
+  std::string kind;  ///< of the element
+  std::string id;    ///< worked out; empty where that failed
+  Place place;       ///< of the element
+};
+
 /// A config after includes, arguments, macros, conditions and sweeps. The ids of nodes are unique (one
 /// element may stand for many points) and fit for file names.
 struct ExperimentConfig {
@@ -72,6 +79,7 @@ struct ExperimentConfig {
   std::vector<Override> overrides;               ///< those that this config took
   std::map<std::string, std::string> arguments;  ///< every declared argument with its final value
   std::vector<UnusedPart> unused;                ///< of all passes of expansion
+  std::vector<LeftOut> left_out;                 ///< likewise
   /// False when a mistake may have left out nodes, sweeps or arguments: missing ones are then no mistakes of
   /// their own.
   bool complete = true;

@@ -22,7 +22,10 @@ Value evaluate_node(const ExpressionNode& node, const Names& names);
 
 /// The part of a conditional that is not evaluated may divide by zero, but not use names that do not exist.
 void require_names(const ExpressionNode& node, const Names& names) {
-  if (node.kind == Kind::name) lookup(node, names);
+  try {
+    if (node.kind == Kind::name) lookup(node, names);
+  } catch (const AlreadyReported&) {  // its value does not matter here
+  }
   for (const Tree& child : node.children) require_names(*child, names);
 }
 
@@ -35,7 +38,14 @@ bool truth(const ExpressionNode& node, const Names& names, std::string_view role
 
 Value logical(const ExpressionNode& node, const Names& names) {
   const std::string role = fmt::format("an operand of '{}'", node.text);
-  const bool left = truth(*node.children[0], names, role);
+  bool left = false;
+  try {
+    left = truth(*node.children[0], names, role);
+  } catch (const AlreadyReported&) {  // the other may decide
+    const bool right = truth(*node.children[1], names, role);
+    if (right == (node.text == "or")) return Value::boolean(right);
+    throw;
+  }
   if (left == (node.text == "or")) {
     require_names(*node.children[1], names);
     return Value::boolean(left);

@@ -184,16 +184,11 @@ class UnusedCheck {
   /// Where it is clear what the element is.
   void check_required(const Element& element, const Meaning& meaning) {
     if (meaning.controls.size() + meaning.components.size() + meaning.slots.size() != 1) return;
-    for (const ControlElement* control : meaning.controls) {
-      for (const auto& [name, doc] : control->attributes) {
-        const std::string plain = name.substr(0, name.size() - 1);
-        if (!name.ends_with('!') || element.find(plain) != nullptr) continue;
-        diagnostics_.error(traced(element.place),
-                           fmt::format("<{}> needs the attribute '{}'", element.name, plain), doc);
-      }
-    }
+    for (const ControlElement* control : meaning.controls)
+      config::check_required(element, *control, trace_, diagnostics_);
     Element here = element, unused;
     here.place = traced(element.place);
+    std::erase_if(here.attributes, [](const Attribute& a) { return is_control_attribute(a.name); });
     Reader reader(here, &unused, &diagnostics_);
     for (const ComponentInfo* info : meaning.components) {
       for (const ParameterInfo& parameter : info->parameters) {

@@ -102,22 +102,12 @@ class ElementReader {
   std::map<std::string, std::set<Point>> points_;
 };
 
-void note_left_out(const Element& element, Declarations& declarations) {
-  if (element.name == "group") {
-    for (const Element& child : element.children) note_left_out(child, declarations);
-  } else if (Catalogue::instance().find(Node::kInterface, element.name) != nullptr && element.place.file) {
-    declarations.left_out.emplace(trim(element.get("id")), element.place);
-  }
-}
-
 }  // namespace
 
 Declarations declare(const ExperimentConfig& experiment, Diagnostics& diagnostics) {
   Declarations declarations;
   ElementReader reader(declarations, diagnostics);
-  for (const UnusedPart& part : experiment.unused) {
-    if (part.parent.empty()) note_left_out(part.element, declarations);
-  }
+  for (const LeftOut& part : experiment.left_out) declarations.left_out.emplace(part.id, part.place);
   for (const NodeElement& given : experiment.nodes) reader.read(given);
   resolve_references(declarations, diagnostics);
   return declarations;

@@ -25,7 +25,7 @@ class ReferenceReader {
     for (const ParameterInfo& parameter : node.info->parameters) {
       if (parameter.type != ValueType::reference && parameter.type != ValueType::references) continue;
       const Attribute* given = element.find(parameter.name);
-      if (given == nullptr) continue;
+      if (given == nullptr || given->failed) continue;
       DeclaredReference reference{&parameter, {}};
       std::set<std::string_view> seen;
       const std::vector<std::string_view> ids = split_list(given->value);

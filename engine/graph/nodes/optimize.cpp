@@ -85,7 +85,6 @@ struct OptimizeNode : Node {
       rules.broken("stop_gap", "stop_gap is of objectives whose optimum is known");
     rules.check("", [&] { optimizer->start(task(*sought, context)); });
     rules.enforce();
-    optimizer->start(task(*sought, context));
   }
 
   void run(NodeContext& context) const override {

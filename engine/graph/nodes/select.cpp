@@ -33,7 +33,7 @@ struct SelectNode : Node {
     const auto target = load_problem(context.inputs("problem").front());
     Rules rules;
     for (const InputNode& policy : context.inputs("policies")) {
-      rules.check("policies", [&] { load_policy(policy, *target); });
+      rules.check("policies", [&] { load_named(policy, *target); });
       rules.check("policies", [&] { require_other_draws(policy, context); });
     }
     rules.enforce();
@@ -75,6 +75,17 @@ struct SelectNode : Node {
   }
 
  private:
+  /// As load_policy; of several, the message says which it is about.
+  static void load_named(const InputNode& policy, const Problem& target) {
+    try {
+      load_policy(policy, target);
+    } catch (const std::invalid_argument& why) {
+      const std::string what = why.what();
+      const bool named = what.find("'" + policy.id + "'") != std::string::npos;
+      throw std::invalid_argument(named ? what : fmt::format("policy '{}': {}", policy.id, what));
+    }
+  }
+
   Returns play(const Problem& target, const Policy& policy, NodeContext& context) const {
     Simulation simulation;
     simulation.policy = &policy;

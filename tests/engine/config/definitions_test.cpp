@@ -301,6 +301,21 @@ TEST(Conditions, AreTrueOrFalse) {
             "'unless' must be true or false, not 1, a plain number");
 }
 
+TEST(Conditions, LeaveOutANodeWithItsSweep) {
+  const std::string sweep = R"(<sweep id="s"><grid><param name="g" values="1, 2"/></grid></sweep>)";
+  const std::string left_out =
+      R"(<arg name="more" default="false"/><group if="${more}">)" + sweep + "</group>";
+  for (const char* condition :
+       {"${more}", "${more and g gt 1}", "${g gt 1 and more}", "${not (g gt 1 or not more)}"}) {
+    const Outcome outcome = expand_body(left_out + R"(<x id="x" over="s" if=")" + condition + R"("/>)");
+    EXPECT_EQ(outcome.text(), "") << condition;
+    EXPECT_EQ(nodes_text(outcome.config), "") << condition;
+    EXPECT_EQ(outcome.config.left_out.size(), 2u);
+  }
+  EXPECT_EQ(bad(left_out + R"(<x id="x" over="s" if="${g gt 1 or more}"/>)").message,
+            "the sweep 's' is left out here");
+}
+
 TEST(Root, NeedsTheVersionOfTheLanguage) {
   const auto error = [](const std::string& text) {
     const Outcome outcome = expand_document(text);
