@@ -349,7 +349,7 @@ void Scanner::scan_value(std::string_view name, ScannedAttribute& attribute) {
     }
     const std::size_t before = diagnostics_.size();
     if (text_.substr(i, end - i).starts_with("&&")) {
-      diagnostics_.error(place(i, 2), "'&&' by itself", "in an expression it is written 'and'");
+      diagnostics_.error(place(i, 2), "'&' by itself", "it is written &amp;; in an expression '&&' is 'and'");
       ++i;
     } else if (text_[i] == '&') {
       check_reference(i, end);
