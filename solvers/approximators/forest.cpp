@@ -21,10 +21,11 @@ constexpr std::size_t kTreesAbreast = 25;
 using Leaves = std::array<std::uint64_t, kTreesAbreast>;
 
 template <std::size_t kSize>
-void find_leaves(const ForestNode* nodes, const std::uint32_t* roots, const float* x, Leaves& leaves) {
+void find_leaves(const ForestNode* nodes, const TreeTop* tops, DescendTops descend_tops,
+                 const RoundedPoint& point, Leaves& leaves) {
   std::array<std::uint64_t, kSize> at;
-  std::copy(roots, roots + kSize, at.begin());
-  descend(nodes, at, [x](std::size_t, std::uint32_t feature) { return x[feature]; });
+  descend_tops(tops, kSize, point.x.data(), at.data());
+  descend_all(nodes, at, point.keys.data());
   std::copy(at.begin(), at.end(), leaves.begin());
 }
 
@@ -33,20 +34,6 @@ constexpr auto finders(std::index_sequence<kSizes...>) {
   return std::array{find_leaves<1 + kSizes>...};
 }
 constexpr auto kFindLeaves = finders(std::make_index_sequence<kTreesAbreast>());
-
-// Calls visit(leaf) for the leaf of x, which a NaN follows, in each tree, in their order.
-template <class Visit>
-void for_each_leaf(const ForestNode* nodes, std::span<const std::uint32_t> roots, std::span<const float> x,
-                   const Visit& visit) {
-  Leaves leaves;
-  std::size_t groups = (roots.size() + kTreesAbreast - 1) / kTreesAbreast;
-  for (std::size_t first = 0; groups > 0; --groups) {  // of about equal size
-    const std::size_t size = (roots.size() - first + groups - 1) / groups;
-    kFindLeaves[size - 1](nodes, roots.data() + first, x.data(), leaves);
-    for (std::size_t i = 0; i < size; ++i) visit(static_cast<std::uint32_t>(leaves[i]));
-    first += size;
-  }
-}
 
 // For memory that is not in use yet: it is filled with fewer page faults, and addresses in it are found
 // faster.
@@ -106,6 +93,7 @@ OutputScale ValueRange::scale() const {
 
 void Forest::reserve(std::size_t trees, std::size_t nodes, std::size_t models) {
   roots_.reserve(trees);
+  tops_.reserve(trees);
   nodes_.reserve(nodes);
   models_.reserve(models);
   prefer_large_pages(nodes_.data(), nodes_.capacity() * sizeof(ForestNode));
@@ -117,7 +105,10 @@ void Forest::add(const PackedTree& tree) {
     throw std::runtime_error("a forest can have at most 2^32 nodes");
   }
   const std::size_t width = model_width(inputs_);
-  roots_.push_back(static_cast<std::uint32_t>(nodes_.size()));
+  const auto root = static_cast<std::uint32_t>(nodes_.size());
+  roots_.push_back(root);
+  tops_.push_back(make_top(tree.nodes.data(), 0));
+  for (std::uint32_t& exit : tops_.back().exits) exit += root;
   if (leaf_ == LeafModel::constant) {
     nodes_.insert(nodes_.end(), tree.nodes.begin(), tree.nodes.end());
     return;
@@ -148,15 +139,29 @@ double Forest::linear_value(std::uint32_t leaf, const double* x) const {
 void Forest::predict(std::span<const double> x, std::span<double> y) const {
   assert(x.size() == inputs_ && y.size() == outputs());
   if (trees() == 1) return predict_alone(x, y);
-  std::array<float, kMaxTreeInputs + 1> rounded;
-  std::transform(x.begin(), x.end(), rounded.begin(), rounded_up);
-  for (std::size_t j = 0; j < directions_.size(); ++j)
-    rounded[inputs_ + j] = rounded_up(directions_.value(j, x.data()));
-  rounded[features()] = std::numeric_limits<float>::quiet_NaN();
-  const std::span<const float> inputs(rounded.data(), features());
+  RoundedPoint point;
+  for (std::size_t i = 0; i < inputs_; ++i) point.set(i, x[i]);
+  for (std::size_t j = 0; j < directions_.size(); ++j) point.set(inputs_ + j, directions_.value(j, x.data()));
+  point.keys[features()] = InputKey::of_leaf();
   for (std::size_t output = 0; output < outputs(); ++output) {
-    y[output] = aggregation_ == Aggregation::mean ? mean(output, x.data(), inputs)
-                                                  : trimmed(output, x.data(), inputs);
+    y[output] =
+        aggregation_ == Aggregation::mean ? mean(output, x.data(), point) : trimmed(output, x.data(), point);
+  }
+}
+
+// Calls visit(leaf) for the leaf of the point in each tree, in their order.
+template <class Visit>
+void Forest::for_each_leaf(std::size_t output, const RoundedPoint& point, const Visit& visit) const {
+  const DescendTops descend_tops = top_descent(features());
+  Leaves leaves;
+  const TreeTop* tops = tops_.data() + output * trees();
+  std::size_t left = trees();
+  for (std::size_t groups = (left + kTreesAbreast - 1) / kTreesAbreast; groups > 0; --groups) {
+    const std::size_t size = (left + groups - 1) / groups;  // of about equal size
+    kFindLeaves[size - 1](nodes_.data(), tops, descend_tops, point, leaves);
+    for (std::size_t i = 0; i < size; ++i) visit(static_cast<std::uint32_t>(leaves[i]));
+    tops += size;
+    left -= size;
   }
 }
 
@@ -176,21 +181,16 @@ void Forest::predict_alone(std::span<const double> x, std::span<double> y) const
   }
 }
 
-std::span<const std::uint32_t> Forest::roots_of(std::size_t output) const {
-  return std::span(roots_).subspan(output * trees(), trees());
-}
-
-double Forest::mean(std::size_t output, const double* x, std::span<const float> rounded) const {
+double Forest::mean(std::size_t output, const double* x, const RoundedPoint& point) const {
   const auto count = static_cast<double>(trees());
   double sum = 0;
   if (leaf_ == LeafModel::constant) {
-    for_each_leaf(nodes_.data(), roots_of(output), rounded,
-                  [&](std::uint32_t leaf) { sum += static_cast<double>(nodes_[leaf].value); });
+    for_each_leaf(output, point, [&](std::uint32_t leaf) { sum += static_cast<double>(nodes_[leaf].value); });
     return scales_[output].offset + scales_[output].scale * (sum / count);
   }
   double low = 0;
   double high = 0;
-  for_each_leaf(nodes_.data(), roots_of(output), rounded, [&](std::uint32_t leaf) {
+  for_each_leaf(output, point, [&](std::uint32_t leaf) {
     sum += linear_value(leaf, x);
     const double* range = models_.data() + nodes_[leaf].row() * model_width(inputs_) + inputs_ + 1;
     low += range[0];
@@ -199,10 +199,10 @@ double Forest::mean(std::size_t output, const double* x, std::span<const float> 
   return std::clamp(sum, low, high) / count;
 }
 
-double Forest::trimmed(std::size_t output, const double* x, std::span<const float> rounded) const {
+double Forest::trimmed(std::size_t output, const double* x, const RoundedPoint& point) const {
   thread_local std::vector<double> values;
   values.clear();
-  for_each_leaf(nodes_.data(), roots_of(output), rounded, [&](std::uint32_t leaf) {
+  for_each_leaf(output, point, [&](std::uint32_t leaf) {
     if (leaf_ == LeafModel::constant) {
       values.push_back(static_cast<double>(nodes_[leaf].value));
     } else {

@@ -12,6 +12,7 @@
 #include "engine/vocabulary/archive.h"
 #include "engine/vocabulary/matrix.h"
 #include "solvers/approximators/aggregation.h"
+#include "solvers/approximators/forest_tops.h"
 #include "solvers/approximators/tree.h"
 
 namespace coppice {
@@ -83,6 +84,8 @@ struct ValueRange {
   OutputScale scale() const;
 };
 
+struct RoundedPoint;
+
 /// A tree as a forest holds it.
 struct PackedTree {
   std::vector<ForestNode> nodes;
@@ -150,11 +153,13 @@ class Forest {
   static Forest load_first_format(const Archive& archive, std::size_t inputs, std::size_t outputs,
                                   LeafModel leaf);
   double linear_value(std::uint32_t leaf, const double* x) const;
-  std::span<const std::uint32_t> roots_of(std::size_t output) const;
   void predict_alone(std::span<const double> x, std::span<double> y) const;  // a tree an output
-  double mean(std::size_t output, const double* x, std::span<const float> rounded) const;
-  double trimmed(std::size_t output, const double* x, std::span<const float> rounded) const;
+  double mean(std::size_t output, const double* x, const RoundedPoint& point) const;
+  double trimmed(std::size_t output, const double* x, const RoundedPoint& point) const;
+  template <class Visit>
+  void for_each_leaf(std::size_t output, const RoundedPoint& point, const Visit& visit) const;
   void check() const;
+  void make_tops();
   void check_numbers() const;
 
   std::size_t inputs_ = 0;
@@ -165,6 +170,7 @@ class Forest {
   std::vector<ForestNode> nodes_;
   std::vector<double> models_;
   std::vector<std::uint32_t> roots_;
+  std::vector<TreeTop> tops_;  // of the trees in their order
 };
 
 }  // namespace coppice

@@ -142,6 +142,7 @@ Forest Forest::load(const Archive& archive) {
   }
   forest.models_ = archive.get<std::vector<double>>("models");
   forest.check();
+  forest.make_tops();
   return forest;
 }
 
@@ -184,6 +185,7 @@ Forest Forest::load_first_format(const Archive& archive, std::size_t inputs, std
     }
   }
   forest.check();
+  forest.make_tops();
   return forest;
 }
 
@@ -195,6 +197,10 @@ void Forest::check_numbers() const {
     if (!std::isfinite(node.value)) invalid("a value that is not finite");
   }
   if (!all_finite(models_)) invalid("a leaf model that is not finite");
+}
+
+void Forest::make_tops() {
+  for (const std::uint32_t root : roots_) tops_.push_back(make_top(nodes_.data(), root));
 }
 
 void Forest::check() const {
