@@ -92,7 +92,7 @@ bool check_required(const Element& element, const ControlElement& declaration, c
     if (!name.ends_with('!') || element.find(required) != nullptr) continue;
     complete = false;
     const auto misspelt = [&](const Attribute& given) {
-      return !contains(known, given.name) && !is_control_attribute(given.name) &&
+      return !contains(known, "*") && !contains(known, given.name) && !is_control_attribute(given.name) &&
              nearest(given.name, known) == required;
     };
     if (std::any_of(element.attributes.begin(), element.attributes.end(), misspelt)) continue;

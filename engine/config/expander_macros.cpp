@@ -93,11 +93,15 @@ void Expander::call(const Element& element, const Context& context, Element* par
   if (macro == nullptr) return leave_out(parent);
   called_.insert(macro);
   const std::size_t files = active_.size();
+  const Element* const sweep = sweep_;
+  std::vector<Exclusion>* const exclusions = exclusions_;
   try {
     expand_call(*macro, element, context, parent);
   } catch (const TooDeep&) {
     if (context.macro != nullptr) throw;  // the call outside of all macros ends, what follows it goes on
     active_.resize(files);
+    sweep_ = sweep;
+    exclusions_ = exclusions;
     leave_out(parent);
   }
 }

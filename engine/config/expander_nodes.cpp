@@ -81,7 +81,10 @@ bool Expander::left_out_with_its_sweeps(const Element& element, Context context)
   const auto left_out = [&](const std::string& id) { return sweep_left_out(id) != nullptr; };
   if (std::none_of(ids.begin(), ids.end(), left_out)) return false;
   context.names_unknown = true;
-  return !wanted(element, context);
+  const bool complete = result_.complete;
+  const bool stays = wanted(element, context);
+  result_.complete = complete;  // where it stays, the missing sweep is a mistake that is reported
+  return !stays;
 }
 
 /// The sweep of this id that a condition left out; null when there is none.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 
 #include "engine/config/expression_tree.h"
 #include "registry/suggest.h"
@@ -36,14 +37,25 @@ bool truth(const ExpressionNode& node, const Names& names, std::string_view role
                    "compare it: x > 0");
 }
 
+/// An operand beside one that is not known, which might have kept it from being evaluated at all.
+std::optional<bool> decided(const ExpressionNode& node, const Names& names, std::string_view role) {
+  try {
+    return truth(node, names, role);
+  } catch (const ExpressionError&) {
+    require_names(node, names);
+  } catch (const AlreadyReported&) {
+  }
+  return std::nullopt;
+}
+
 Value logical(const ExpressionNode& node, const Names& names) {
   const std::string role = fmt::format("an operand of '{}'", node.text);
   bool left = false;
   try {
     left = truth(*node.children[0], names, role);
-  } catch (const AlreadyReported&) {  // the other may decide
-    const bool right = truth(*node.children[1], names, role);
-    if (right == (node.text == "or")) return Value::boolean(right);
+  } catch (const AlreadyReported&) {
+    const std::optional<bool> right = decided(*node.children[1], names, role);
+    if (right && *right == (node.text == "or")) return Value::boolean(*right);
     throw;
   }
   if (left == (node.text == "or")) {

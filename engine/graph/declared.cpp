@@ -107,7 +107,10 @@ class ElementReader {
 Declarations declare(const ExperimentConfig& experiment, Diagnostics& diagnostics) {
   Declarations declarations;
   ElementReader reader(declarations, diagnostics);
-  for (const LeftOut& part : experiment.left_out) declarations.left_out.emplace(part.id, part.place);
+  for (const LeftOut& part : experiment.left_out) {
+    if (Catalogue::instance().find(Node::kInterface, part.kind) != nullptr)
+      declarations.left_out.emplace(part.id, part.place);
+  }
   for (const NodeElement& given : experiment.nodes) reader.read(given);
   resolve_references(declarations, diagnostics);
   return declarations;

@@ -306,8 +306,10 @@ TEST(Conditions, LeaveOutANodeWithItsSweep) {
   const std::string left_out =
       R"(<arg name="more" default="false"/><group if="${more}">)" + sweep + "</group>";
   for (const char* condition :
-       {"${more}", "${more and g gt 1}", "${g gt 1 and more}", "${not (g gt 1 or not more)}"}) {
+       {"${more}", "${more and g gt 1}", "${g gt 1 and more}", "${not (g gt 1 or not more)}",
+        "${g gt 1 and env(NO_SUCH_NAME) == 'a' and more}", "${g gt 1}\" unless=\"${not more}"}) {
     const Outcome outcome = expand_body(left_out + R"(<x id="x" over="s" if=")" + condition + R"("/>)");
+    EXPECT_TRUE(outcome.config.complete) << "arguments that nothing declares are reported";
     EXPECT_EQ(outcome.text(), "") << condition;
     EXPECT_EQ(nodes_text(outcome.config), "") << condition;
     EXPECT_EQ(outcome.config.left_out.size(), 2u);
