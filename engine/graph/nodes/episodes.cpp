@@ -1,5 +1,7 @@
 #include "engine/graph/nodes/episodes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 
