@@ -147,8 +147,8 @@ class Node : public NodeOptions {
   /// Spaces of the problem that the policy or the dataset it makes is for, as far as they are known when
   /// planning; null: unknown, or of any.
   virtual std::shared_ptr<const Spaces> spaces(const NodeContext&) const { return nullptr; }
-  /// Checks that need the inputs' elements. Throws std::invalid_argument or ConfigError; called when
-  /// planning.
+  /// Checks that need the inputs' elements. Throws std::invalid_argument (BrokenRules with several, each
+  /// about a parameter) or ConfigError; called when planning.
   virtual void check(const NodeContext&) const {}
   virtual void run(NodeContext& context) const = 0;
 };
