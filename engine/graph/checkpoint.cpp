@@ -14,7 +14,7 @@ constexpr std::string_view kMagic = "coppice checkpoint 2\n";
 
 }  // namespace
 
-void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint) {
+std::string checkpoint_bytes(const Checkpoint& checkpoint) {
   std::string content;
   append_number(content, checkpoint.work.wall_s);
   append_number(content, checkpoint.work.cpu_s);
@@ -31,7 +31,7 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& check
   content += checkpoint.state.bytes();
   std::string bytes(kMagic);
   append_text(bytes, content_hash(content));
-  write_file(file, bytes + content);
+  return bytes + content;
 }
 
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file) {

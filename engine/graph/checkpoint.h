@@ -24,8 +24,8 @@ struct Checkpoint {
   Archive state;  ///< of the node
 };
 
-/// Throws std::runtime_error with the file and the system's reason.
-void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint);
+/// What a checkpoint's file holds.
+std::string checkpoint_bytes(const Checkpoint& checkpoint);
 
 /// None when there is none, or a damaged one: the work then begins anew.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file);

@@ -29,7 +29,7 @@ ResultRecord compute_node(const Plan& plan, std::size_t index, const std::filesy
                           const std::function<void(const RunningContext*)>& watch) {
   const PlannedNode& node = plan.nodes[index];
   const std::filesystem::path folder = store.begin(node.key);
-  RunningContext context(plan, index, run_folder, folder, store.checkpoint(node.key), parallel);
+  RunningContext context(plan, index, run_folder, folder, store, parallel);
   try {
     watch(&context);
     node.node->run(context);

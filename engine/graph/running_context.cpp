@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 
 #include "engine/data/table_file.h"
-#include "engine/graph/store.h"
 
 namespace coppice {
 
 RunningContext::RunningContext(const Plan& plan, std::size_t node, const std::filesystem::path& run_folder,
-                               std::filesystem::path folder, std::filesystem::path checkpoint,
-                               TaskParallel& parallel)
+                               std::filesystem::path folder, Store& store, TaskParallel& parallel)
     : PlannedContext(plan, node, run_folder),
       folder_(std::move(folder)),
-      checkpoint_(std::move(checkpoint)),
+      store_(store),
+      key_(plan.nodes[node].key),
       parallel_(parallel),
       start_(std::chrono::steady_clock::now()) {}
 
@@ -33,14 +32,14 @@ void RunningContext::progress(std::int64_t done, std::int64_t total) {
 }
 
 std::optional<Archive> RunningContext::checkpoint() {
-  std::optional<Checkpoint> found = read_checkpoint(checkpoint_);
+  std::optional<Checkpoint> found = read_checkpoint(store_.checkpoint(key_));
   if (!found) return std::nullopt;
   before_ = std::move(found->work);
   return std::move(found->state);
 }
 
 void RunningContext::save_checkpoint(const Archive& archive) {
-  write_checkpoint(checkpoint_, {work(), archive});
+  store_.save_checkpoint(key_, checkpoint_bytes({work(), archive}));
 }
 
 WorkDone RunningContext::work() const {

@@ -9,15 +9,16 @@
 #include "engine/graph/checkpoint.h"
 #include "engine/graph/planned_context.h"
 #include "engine/graph/pool.h"
+#include "engine/graph/store.h"
 
 namespace coppice {
 
 /// What a node sees while it runs.
 class RunningContext : public PlannedContext {
  public:
-  /// `folder` is where it writes, `checkpoint` the file of its checkpoints.
+  /// `folder` is where it writes, `store` where its checkpoints lie.
   RunningContext(const Plan& plan, std::size_t node, const std::filesystem::path& run_folder,
-                 std::filesystem::path folder, std::filesystem::path checkpoint, TaskParallel& parallel);
+                 std::filesystem::path folder, Store& store, TaskParallel& parallel);
 
   const std::filesystem::path& folder() const override { return folder_; }
   Parallel& parallel() override { return parallel_; }
@@ -37,7 +38,8 @@ class RunningContext : public PlannedContext {
 
  private:
   std::filesystem::path folder_;
-  std::filesystem::path checkpoint_;
+  Store& store_;
+  std::string key_;
   TaskParallel& parallel_;
   std::chrono::steady_clock::time_point start_;
   WorkDone before_;

@@ -93,6 +93,7 @@ Store::Store(fs::path path) : StoreReader(std::move(path)) {
     in_use_ = std::make_unique<OpenFile>(in_use, O_RDWR | O_CREAT);
     lock(*in_use_, in_use, LOCK_SH);
     claim_temporary_folder();
+    remove_outlived_checkpoints();
   } catch (const std::runtime_error& error) {
     throw ConfigError(error.what());
   }
@@ -117,6 +118,20 @@ void Store::claim_temporary_folder() {
   }
   claim_ = std::make_unique<OpenFile>(temporary_, O_RDONLY | O_DIRECTORY);
   lock(*claim_, temporary_, LOCK_EX);
+}
+
+/// A process may have been killed between acknowledging a result and removing its checkpoint. One that is
+/// newer than the record is of a node that another process computes again.
+void Store::remove_outlived_checkpoints() const {
+  std::error_code ignored;  // what cannot be removed does no harm
+  for (fs::directory_iterator entry(folder() / "checkpoints", ignored), end; entry != end;
+       entry.increment(ignored)) {
+    FileStamp saved, acknowledged;
+    if (stamp_file(entry->path().native(), saved) &&
+        stamp_file(record(entry->path().filename().string()).native(), acknowledged) &&
+        saved.modified_ns <= acknowledged.modified_ns)
+      fs::remove(entry->path(), ignored);
+  }
 }
 
 fs::path Store::temporary(const std::string& name) {
@@ -187,6 +202,12 @@ ResultRecord Store::commit(const fs::path& made, ResultRecord result) {
   coppice::remove_all(checkpoint(result.key));
   coppice::remove_all(made);
   return result;
+}
+
+void Store::save_checkpoint(const std::string& key, std::string_view bytes) {
+  const fs::path written = temporary("checkpoint");  // not beside it, where nobody would remove it
+  write_file(written, bytes);
+  rename_file(written, checkpoint(key));
 }
 
 void Store::remove(const std::string& key) {

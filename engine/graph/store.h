@@ -73,8 +73,8 @@ class StoreReader {
 /// came since; find() tells what is not whole.
 class Store : public StoreReader {
  public:
-  /// Opens or makes the store, and removes what killed processes left in tmp. Throws ConfigError with the
-  /// folder and the system's reason.
+  /// Opens or makes the store, and removes what killed processes left: in tmp, and checkpoints of results that
+  /// they had acknowledged. Throws ConfigError with the folder and the system's reason.
   explicit Store(std::filesystem::path folder);
   ~Store();
   Store(const Store&) = delete;
@@ -88,11 +88,14 @@ class Store : public StoreReader {
   ResultRecord commit(const std::filesystem::path& folder, ResultRecord record);
   /// Forgets a folder that begin made.
   void abandon(const std::filesystem::path& folder);
+  /// Replaces the key's checkpoint. Throws std::runtime_error with file and reason.
+  void save_checkpoint(const std::string& key, std::string_view bytes);
   /// Takes a result back (damaged, or to be made again).
   void remove(const std::string& key);
 
  private:
   void claim_temporary_folder();
+  void remove_outlived_checkpoints() const;
   std::filesystem::path temporary(const std::string& name);
   StoredFile keep(const std::filesystem::path& file, const std::string& name);
   bool sync_is_due();

@@ -32,6 +32,7 @@ std::string crash_key(int number) {
 
 void commit(Store& store, int number) {
   const fs::path folder = store.begin(crash_key(number));
+  store.save_checkpoint(crash_key(number), "half way");
   for (const auto& [name, content] : files_of(number)) std::ofstream(folder / name) << content;
   ResultRecord record;
   record.key = crash_key(number);
@@ -125,6 +126,8 @@ TEST(StoreCrash, NothingAcknowledgedIsLostAndNothingIsHalfThere) {
   EXPECT_GE(acknowledged, 2 * kKills);
   const Store store(folder);
   EXPECT_EQ(folders_in(folder / "tmp"), 1u) << "leftovers of killed processes";
+  for (const auto& checkpoint : fs::directory_iterator(folder / "checkpoints"))
+    EXPECT_FALSE(fs::exists(store.record(checkpoint.path().filename().string()))) << checkpoint.path();
 }
 
 TEST(StoreCrash, OnlyFoldersOfDeadProcessesAreRemoved) {

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -146,7 +147,10 @@ TEST_F(StoreTest, TimingLiesBesideTheResult) {
 
 TEST_F(StoreTest, CommitLeavesNothingElseAndEndsTheCheckpoint) {
   Store store(folder_);
-  write_file(store.checkpoint(key_), "half way");
+  store.save_checkpoint(key_, "begun");
+  store.save_checkpoint(key_, "half way");
+  EXPECT_EQ(read_file(store.checkpoint(key_)), "half way");
+  EXPECT_EQ(count_files(folder_ / "tmp"), 1u);  // the lock
   const fs::path made = store.begin(key_);
   EXPECT_TRUE(fs::is_empty(made));
   write_all(made, files_);
@@ -157,6 +161,24 @@ TEST_F(StoreTest, CommitLeavesNothingElseAndEndsTheCheckpoint) {
   write_all(unwanted, files_);
   store.abandon(unwanted);
   EXPECT_FALSE(fs::exists(unwanted));
+}
+
+TEST_F(StoreTest, OpeningItRemovesCheckpointsOfResultsAcknowledgedSince) {
+  const std::string outlived = key_of(1), forced = key_of(2), unfinished = key_of(3);
+  {
+    Store store(folder_);
+    for (const std::string& key : {outlived, forced}) commit(store, key, files_);
+    for (const std::string& key : {outlived, forced, unfinished}) store.save_checkpoint(key, "half way");
+    // As after a kill between acknowledging the one, and while computing the other one again.
+    const auto acknowledged = fs::last_write_time(store.record(outlived));
+    fs::last_write_time(store.checkpoint(outlived), acknowledged - std::chrono::milliseconds(1));
+    fs::last_write_time(store.checkpoint(forced), acknowledged + std::chrono::seconds(1));
+  }
+  const Store store(folder_);
+  EXPECT_FALSE(fs::exists(store.checkpoint(outlived)));
+  EXPECT_TRUE(fs::exists(store.checkpoint(forced)));
+  EXPECT_TRUE(fs::exists(store.checkpoint(unfinished)));
+  EXPECT_EQ(contents(store, outlived), files_);
 }
 
 TEST_F(StoreTest, AnAbsentStoreHasNoResultsAndIsNotMade) {
