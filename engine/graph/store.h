@@ -73,8 +73,8 @@ class StoreReader {
 /// came since; find() tells what is not whole.
 class Store : public StoreReader {
  public:
-  /// Opens or makes the store, and removes what killed processes left: in tmp, and checkpoints of results that
-  /// they had acknowledged. Throws ConfigError with the folder and the system's reason.
+  /// Opens or makes the store, and removes what killed processes left: in tmp, and checkpoints of results
+  /// that they had acknowledged. Throws ConfigError with the folder and the system's reason.
   explicit Store(std::filesystem::path folder);
   ~Store();
   Store(const Store&) = delete;
