@@ -129,8 +129,8 @@ ForestTree Forest::tree(std::size_t output, std::size_t index) const {
           scales_[output], &directions_};
 }
 
-double Forest::linear_value(std::uint32_t leaf, const double* x) const {
-  const double* model = models_.data() + nodes_[leaf].row() * model_width(inputs_);
+double Forest::linear_value(ForestNode leaf, const double* x) const {
+  const double* model = models_.data() + leaf.row() * model_width(inputs_);
   double value = model[0];
   for (std::size_t i = 0; i < inputs_; ++i) value += model[1 + i] * x[i];
   return value;
@@ -171,11 +171,11 @@ void Forest::predict_alone(std::span<const double> x, std::span<double> y) const
   for (std::size_t j = 0; j < directions_.size(); ++j)
     keys[inputs_ + j] = key_of(directions_.value(j, x.data()));
   for (std::size_t output = 0; output < outputs(); ++output) {
-    const std::uint32_t leaf = descend_alone(nodes_.data(), roots_[output], keys.data());
+    const ForestNode leaf = descend_alone(nodes_.data(), roots_[output], keys.data());
     if (leaf_ == LeafModel::constant) {
-      y[output] = scales_[output].offset + scales_[output].scale * nodes_[leaf].value;
+      y[output] = scales_[output].offset + scales_[output].scale * leaf.value;
     } else {
-      const double* range = models_.data() + nodes_[leaf].row() * model_width(inputs_) + inputs_ + 1;
+      const double* range = models_.data() + leaf.row() * model_width(inputs_) + inputs_ + 1;
       y[output] = std::clamp(linear_value(leaf, x.data()), range[0], range[1]) + 0.0;  // -0 is 0, as in a sum
     }
   }
@@ -191,7 +191,7 @@ double Forest::mean(std::size_t output, const double* x, const RoundedPoint& poi
   double low = 0;
   double high = 0;
   for_each_leaf(output, point, [&](std::uint32_t leaf) {
-    sum += linear_value(leaf, x);
+    sum += linear_value(nodes_[leaf], x);
     const double* range = models_.data() + nodes_[leaf].row() * model_width(inputs_) + inputs_ + 1;
     low += range[0];
     high += range[1];
@@ -207,7 +207,7 @@ double Forest::trimmed(std::size_t output, const double* x, const RoundedPoint& 
       values.push_back(static_cast<double>(nodes_[leaf].value));
     } else {
       const double* range = models_.data() + nodes_[leaf].row() * model_width(inputs_) + inputs_ + 1;
-      values.push_back(std::clamp(linear_value(leaf, x), range[0], range[1]));
+      values.push_back(std::clamp(linear_value(nodes_[leaf], x), range[0], range[1]));
     }
   });
   const double value = trimmed_mean(values);

@@ -152,7 +152,7 @@ class Forest {
   void load_directions(const Archive& archive);
   static Forest load_first_format(const Archive& archive, std::size_t inputs, std::size_t outputs,
                                   LeafModel leaf);
-  double linear_value(std::uint32_t leaf, const double* x) const;
+  double linear_value(ForestNode leaf, const double* x) const;
   void predict_alone(std::span<const double> x, std::span<double> y) const;  // a tree an output
   double mean(std::size_t output, const double* x, const RoundedPoint& point) const;
   double trimmed(std::size_t output, const double* x, const RoundedPoint& point) const;
