@@ -166,8 +166,24 @@ void partition_column(const float* x, float threshold, std::size_t size, float* 
   std::memcpy(values + low, scratch, high * sizeof(float));
 }
 
+// All columns of rows that fit into a vector. What lies behind the rows is written again as it was: so each
+// store is whole, and what loads the low side next need not wait until it has reached the cache.
+void partition_few(const SampleBlock& block, std::uint32_t feature, float threshold) {
+  const Mask valid = first(block.size());
+  const Mask low = both(valid, at_most(load(block.column(feature)), all(threshold)));
+  const auto high = static_cast<Mask>(valid & ~low);
+  const auto places = static_cast<Mask>(valid & ~first(add_count(no_counts(), low)));
+  const std::size_t width = block.width();
+  for (std::size_t c = 0; c < width; ++c) {
+    const Floats values = load(block.column(c));
+    const Floats sorted = _mm512_mask_compress_ps(values, low, values);
+    store(block.column(c), _mm512_mask_expand_ps(sorted, places, _mm512_maskz_compress_ps(high, values)));
+  }
+}
+
 void partition(const SampleBlock& block, std::uint32_t feature, float threshold, float* scratch,
                std::size_t) {
+  if (block.size() <= kLanes) return partition_few(block, feature, threshold);
   partition_by_column(block, feature, threshold, scratch, partition_column);
 }
 

@@ -96,9 +96,24 @@ void find_low_sides_of(const SampleBlock& block, Candidate* candidates, std::siz
   for (; c < size; ++c) find_low_sides_of<1, kWeighted>(block, candidates + c);
 }
 
+// The same of rows that fit into a vector and have no weights.
+inline void find_low_sides_of_few(const SampleBlock& block, Candidate* candidates, std::size_t size) {
+  const Mask valid = first(block.size());
+  const Floats outputs = load(block.outputs());
+  for (std::size_t c = 0; c < size; ++c) {
+    Candidate& candidate = candidates[c];
+    const Mask low = both(valid, at_most(load(block.column(candidate.feature)), all(candidate.threshold)));
+    candidate.sum = static_cast<double>(total(add_where(all(0), low, outputs)));
+    candidate.count = counted(add_count(no_counts(), low));
+    candidate.weight = static_cast<double>(candidate.count);
+  }
+}
+
 inline void find_low_sides(const SampleBlock& block, Candidate* candidates, std::size_t size) {
   if (block.weighted) {
     find_low_sides_of<true>(block, candidates, size);
+  } else if (block.size() <= kLanes) {
+    find_low_sides_of_few(block, candidates, size);
   } else {
     find_low_sides_of<false>(block, candidates, size);
   }
