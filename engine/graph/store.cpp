@@ -121,15 +121,15 @@ void Store::claim_temporary_folder() {
 }
 
 /// A process may have been killed between acknowledging a result and removing its checkpoint. One that is
-/// newer than the record is of a node that another process computes again.
+/// newer than the record is of a node that was being computed again.
 void Store::remove_outlived_checkpoints() const {
   std::error_code ignored;  // what cannot be removed does no harm
   for (fs::directory_iterator entry(folder() / "checkpoints", ignored), end; entry != end;
        entry.increment(ignored)) {
+    const std::string key = entry->path().filename().string();
     FileStamp saved, acknowledged;
-    if (stamp_file(entry->path().native(), saved) &&
-        stamp_file(record(entry->path().filename().string()).native(), acknowledged) &&
-        saved.modified_ns <= acknowledged.modified_ns)
+    if (stamp_file(entry->path().native(), saved) && stamp_file(record(key).native(), acknowledged) &&
+        saved.modified_ns <= acknowledged.modified_ns && find(key))
       fs::remove(entry->path(), ignored);
   }
 }

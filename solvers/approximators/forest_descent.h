@@ -91,8 +91,7 @@ inline std::uint32_t ordered(std::uint32_t bits) {
 }
 
 /// An input as descend_alone compares it: rounded_up(x), in order. Zeros are equal, and NaN is not above
-/// anything. What single precision has as normal numbers is rounded as whole numbers are, which is sooner
-/// done.
+/// anything. Normal numbers of single precision are rounded as whole numbers are, which is faster.
 inline std::uint32_t key_of(double x) {
   const auto bits = std::bit_cast<std::uint64_t>(x);
   constexpr std::uint64_t kCut = 29;         // bits of the fraction that single precision has not

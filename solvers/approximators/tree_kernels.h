@@ -8,7 +8,7 @@ namespace coppice {
 
 /// Rows [begin, end) of training samples in single precision, column after column: the inputs, the output,
 /// the weights unless all are 1, and the directions of oblique splits. Each column is followed by kLanes
-/// numbers that may be read, and written again as they are.
+/// numbers that may be read, and written again as they are; so may rows of the columns behind the block.
 struct SampleBlock {
   float* columns = nullptr;
   std::size_t stride = 0;  ///< from one column to the next

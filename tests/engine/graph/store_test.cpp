@@ -164,20 +164,27 @@ TEST_F(StoreTest, CommitLeavesNothingElseAndEndsTheCheckpoint) {
 }
 
 TEST_F(StoreTest, OpeningItRemovesCheckpointsOfResultsAcknowledgedSince) {
-  const std::string outlived = key_of(1), forced = key_of(2), unfinished = key_of(3);
+  const std::string outlived = key_of(1), forced = key_of(2), unfinished = key_of(3), damaged = key_of(4);
   {
     Store store(folder_);
     for (const std::string& key : {outlived, forced}) commit(store, key, files_);
-    for (const std::string& key : {outlived, forced, unfinished}) store.save_checkpoint(key, "half way");
-    // As after a kill between acknowledging the one, and while computing the other one again.
-    const auto acknowledged = fs::last_write_time(store.record(outlived));
-    fs::last_write_time(store.checkpoint(outlived), acknowledged - std::chrono::milliseconds(1));
+    commit(store, damaged, {{"lost", "with the power"}});
+    coppice::remove_all(store.object(store.find(damaged)->files[0].hash));
+    for (const std::string& key : {outlived, forced, unfinished, damaged})
+      store.save_checkpoint(key, "half way");
+    // As after a kill when the one was acknowledged, and while the other one was computed again.
+    for (const std::string& key : {outlived, damaged}) {
+      const auto acknowledged = fs::last_write_time(store.record(key));
+      fs::last_write_time(store.checkpoint(key), acknowledged - std::chrono::milliseconds(1));
+    }
+    const auto acknowledged = fs::last_write_time(store.record(forced));
     fs::last_write_time(store.checkpoint(forced), acknowledged + std::chrono::seconds(1));
   }
   const Store store(folder_);
   EXPECT_FALSE(fs::exists(store.checkpoint(outlived)));
   EXPECT_TRUE(fs::exists(store.checkpoint(forced)));
   EXPECT_TRUE(fs::exists(store.checkpoint(unfinished)));
+  EXPECT_TRUE(fs::exists(store.checkpoint(damaged)));
   EXPECT_EQ(contents(store, outlived), files_);
 }
 

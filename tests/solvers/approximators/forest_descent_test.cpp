@@ -17,8 +17,9 @@ const Draws kDescentDraws(2017, "forest", 0);
 TEST(RoundedUp, IsTheLeastFloatThatIsNotBelow) {
   Stream stream = kDescentDraws.stream("rounded");
   std::vector<double> values = {
-      0.0, 1.0,     1e-50, 1e-310, 1e-45, 3.4e38, 3.5e38, 1e300, std::numeric_limits<double>::infinity(),
-      0.1, 16777217};
+      0.0,    1.0,           1e-50,  1e-310, 1e-45,
+      3.4e38, 3.40282347e38, 3.5e38, 1e300,  std::numeric_limits<double>::infinity(),
+      0.1,    16777217};
   for (int i = 0; i < 100000; ++i) values.push_back(stream.normal() * std::exp2(stream.uniform(-160, 130)));
   for (const double magnitude : values) {
     for (const double x : {magnitude, -magnitude}) {
