@@ -28,6 +28,7 @@ TEST(RoundedUp, IsTheLeastFloatThatIsNotBelow) {
       const float below = std::nextafter(up, -std::numeric_limits<float>::infinity());
       ASSERT_TRUE(static_cast<double>(below) < x || up == below) << x;
       ASSERT_FALSE(up == 0 && std::signbit(up)) << x;
+      ASSERT_TRUE(!is_normal(x) || normal_rounded_up(x) == std::bit_cast<std::uint32_t>(up)) << x;
       // Above what is below it, and not above itself, whatever the sign of a zero.
       const auto key = [](float number) { return ordered(std::bit_cast<std::uint32_t>(number)); };
       ASSERT_LE(key_of(x), key(up)) << x;
