@@ -49,7 +49,9 @@ struct FigureNode : Node {
     rules.check("of", [&] { source = source_of(nodes); });
     if (source) check_source(*source, context, rules);
     if (source && !(*source == Source::metrics && lacks_x()))
-      rules.check("by", [&] { groups(drawn(context)); });
+      rules.check("by", [&] {
+        arrange(entries_of(drawn(context)), {by, x_keys(nodes), "by and x", "by", "x"});
+      });
     rules.enforce();
   }
 
@@ -221,8 +223,13 @@ struct FigureNode : Node {
   /// What tells rows of the figure's table apart: `by`, and the x of metrics.
   std::vector<std::string> keys(const std::vector<InputNode>& nodes) const {
     std::vector<std::string> names = by;
-    if (kind == FigureKind::line && source_of(nodes) == Source::metrics) names.push_back(x);
+    const std::vector<std::string> of_x = x_keys(nodes);
+    names.insert(names.end(), of_x.begin(), of_x.end());
     return names;
+  }
+  std::vector<std::string> x_keys(const std::vector<InputNode>& nodes) const {
+    if (kind == FigureKind::line && source_of(nodes) == Source::metrics) return {x};
+    return {};
   }
   std::vector<TableCell> groups(const std::vector<InputNode>& nodes) const {
     return arrange(entries_of(nodes), {keys(nodes), {}, "by and x", "by", "by"});

@@ -7,6 +7,7 @@
 #include "engine/config/config_root.h"
 #include "engine/config/expander.h"
 #include "engine/config/experiment.h"
+#include "engine/config/sweep.h"
 #include "registry/suggest.h"
 
 namespace coppice {
@@ -28,11 +29,13 @@ class Merger {
     Point combination;
     values_.resize(swept.size());
     for (std::size_t i = 0; i < swept.size(); ++i) {
-      const std::string& name = swept[i]->override.name;
-      combination.emplace_back(name, pass.arguments.at(name));
-      if (std::find(values_[i].begin(), values_[i].end(), combination.back().second) == values_[i].end()) {
-        values_[i].push_back(combination.back().second);
-      }
+      const GivenArgument& argument = *swept[i];
+      const std::string& value = pass.arguments.at(argument.override.name);
+      combination.emplace_back(argument.override.name, value);
+      const std::string key = config::point_key({config::Value::inferred(value)});
+      const auto [known, is_new] = values_[i].first_with.try_emplace(key, argument.chosen);
+      if (is_new) values_[i].texts.push_back(value);
+      if (known->second < argument.chosen) values_[i].repeated.try_emplace(argument.chosen, value);
     }
     // A value that was given twice is reported in the end.
     if (combinations_.insert(combination).second) {
@@ -100,14 +103,22 @@ class Merger {
     groups_[group.first->second].push_back(std::move(node));
   }
 
-  SweepPoints implicit_sweep(const GivenArgument& argument, const std::vector<std::string>& values,
-                             Diagnostics& diagnostics) {
+  /// The values of a swept argument, as worked out.
+  struct SweptValues {
+    std::vector<std::string> texts;
+    std::map<std::string, std::size_t> first_with;  // by what tells values apart
+    std::map<std::size_t, std::string> repeated;
+  };
+
+  static SweepPoints implicit_sweep(const GivenArgument& argument, const SweptValues& values,
+                                    Diagnostics& diagnostics) {
     const std::string& name = argument.override.name;
     SweepPoints sweep{name, argument.override.place, {name}, {}, true};
-    for (const std::string& value : values) sweep.points.push_back({{name, value}});
-    if (experiment_.complete && values.size() < argument.values.size()) {
-      diagnostics.error(argument.override.place,
-                        fmt::format("the argument '{}' is given a value twice", name));
+    for (const std::string& value : values.texts) sweep.points.push_back({{name, value}});
+    for (const auto& [index, value] : values.repeated) {
+      diagnostics.error(argument.values[index].value_place,
+                        fmt::format("the argument '{}' is given the value {} twice", name, value),
+                        "numbers are compared by value, not by spelling");
     }
     return sweep;
   }
@@ -117,8 +128,8 @@ class Merger {
   std::vector<std::vector<NodeElement>> groups_;  // the points of each node
   std::map<std::string, std::size_t> group_of_;
   std::set<std::tuple<const SourceFile*, int, int>> unused_;
-  std::set<Point> combinations_;                  // of the swept arguments
-  std::vector<std::vector<std::string>> values_;  // of each swept argument, as worked out
+  std::set<Point> combinations_;  // of the swept arguments
+  std::vector<SweptValues> values_;
 };
 
 /// Reports what keeps the swept arguments from being swept; false then.

@@ -145,6 +145,10 @@ class Expander {
   // expander_nodes.cpp
   void node(const Element& element, const Context& context);
   void node_over_sweeps(const Element& element, const Context& context);
+  void node_at_each_point(const Element& element, const std::vector<DefinedSweep*>& sweeps,
+                          const std::optional<Attribute>& id, const Context& context);
+  bool may_have_so_many(const Element& element, const std::vector<DefinedSweep*>& sweeps,
+                        const Context& context);
   bool left_out_with_its_sweeps(const Element& element, Context context);
   const LeftOut* sweep_left_out(const std::string& id) const;
   std::vector<DefinedSweep*> sweeps_of(const Element& element, Context& context);

@@ -54,22 +54,47 @@ void Expander::node_over_sweeps(const Element& element, const Context& context) 
   std::optional<Attribute> id;
   if (const Attribute* raw = element.find("id")) id = evaluator_.attribute(*raw, inner);
   if (id && id->failed) result_.complete = false;
-  const Attribute* at = element.find("at");
-  if (at != nullptr) {
+  const std::size_t before = result_.nodes.size();
+  if (const Attribute* at = element.find("at")) {
     const std::optional<std::vector<std::size_t>> rows = point_of(*at, sweeps, inner);
     if (rows) node_at_point(element, sweeps, *rows, id, inner);
     if (!rows) result_.complete = false;
-    return;
+  } else if (may_have_so_many(element, sweeps, inner)) {
+    node_at_each_point(element, sweeps, id, inner);
   }
+  if (!sweeps.empty() && result_.nodes.size() == before) note_left_out(element, inner);
+}
+
+void Expander::node_at_each_point(const Element& element, const std::vector<DefinedSweep*>& sweeps,
+                                  const std::optional<Attribute>& id, const Context& context) {
   std::vector<std::size_t> rows(sweeps.size(), 0);
   for (bool more = true; more;) {
-    node_at_point(element, sweeps, rows, id, inner);
+    node_at_point(element, sweeps, rows, id, context);
     more = false;
     for (std::size_t i = sweeps.size(); i-- > 0 && !more;) {  // the last sweep changes fastest
       more = ++rows[i] < sweeps[i]->rows.rows.size();
       if (!more) rows[i] = 0;
     }
   }
+}
+
+/// False, and reported, when an experiment cannot have so many nodes, before they are made.
+bool Expander::may_have_so_many(const Element& element, const std::vector<DefinedSweep*>& sweeps,
+                                const Context& context) {
+  const std::size_t most = kMostPoints - std::min(kMostPoints, result_.nodes.size());
+  std::size_t count = 1;
+  std::string product;
+  for (const DefinedSweep* sweep : sweeps) {
+    const std::size_t points = std::max<std::size_t>(1, sweep->rows.rows.size());
+    count = points > most / count ? most + 1 : count * points;
+    product += fmt::format("{}{}", product.empty() ? "" : " x ", points);
+    if (count <= most) continue;
+    error(element.find("over")->value_place, context,
+          fmt::format("the experiment has more than {} nodes: {} here", kMostPoints, product));
+    result_.complete = false;
+    return false;
+  }
+  return true;
 }
 
 /// True when a sweep that the node is to run over is not there, and the node's conditions do not hold either,

@@ -17,7 +17,7 @@ struct SweepRows {
   bool drawn = false;  ///< by chance, so that a point may come twice without a mistake
 };
 
-inline constexpr std::size_t kMostPoints = 1'000'000;  ///< of one sweep
+inline constexpr std::size_t kMostPoints = 1'000'000;  ///< of one sweep; and nodes of an experiment
 
 /// The points of a <sweep> whose attributes are worked out already, without its <exclude>. Nothing after a
 /// mistake. A point that comes again from another part of the union, or by chance, is left out; one that is

@@ -13,6 +13,8 @@
 namespace coppice {
 namespace {
 
+constexpr std::size_t kLongestId = 100;
+
 bool is_name(std::string_view text) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
   const auto other = [](char c) { return (c >= '0' && c <= '9') || c == '-'; };
@@ -56,15 +58,27 @@ class ElementReader {
   }
 
  private:
+  /// False, and reported, for what cannot be an id.
+  bool is_good(const Attribute& id, const std::string& name, const Element& element) {
+    if (id.failed) return false;  // reported
+    if (!is_name(name)) {
+      diagnostics_.error(place_of(&id, element), fmt::format("id=\"{}\" is no name", id.value),
+                         "a name has letters, digits, '_' and '-', and starts with a letter or '_'");
+      return false;
+    }
+    if (name.size() <= kLongestId) return true;
+    diagnostics_.error(place_of(&id, element),
+                       fmt::format("the id '{}...' has {} characters", name.substr(0, 20), name.size()),
+                       fmt::format("files are named after it: at most {}", kLongestId));
+    return false;
+  }
+
   /// The declared node that the element belongs to; null after a mistake in its id.
   DeclaredNode* node_of(const NodeElement& given, const ComponentInfo& info) {
     const Element& element = given.element;
     const Attribute* id = element.find("id");
     const std::string name(trim(id == nullptr ? std::string_view() : std::string_view(id->value)));
-    if (id != nullptr && (id->failed || !is_name(name))) {
-      if (!id->failed)
-        diagnostics_.error(place_of(id, element), fmt::format("id=\"{}\" is no name", id->value),
-                           "a name has letters, digits, '_' and '-', and starts with a letter or '_'");
+    if (id != nullptr && !is_good(*id, name, element)) {
       make<Node>(element, diagnostics_);  // reports its other mistakes
       return nullptr;
     }

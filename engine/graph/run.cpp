@@ -179,6 +179,10 @@ RunOutcome run(const std::vector<Plan>& plans, const RunOptions& given) {
   outcome.totals.up_to_date = up_to_date(workspaces);
   if (updates.empty()) {
     if (has_leftovers(options.out / "store")) Store(options.out / "store");
+    if (options.listener != nullptr) {
+      options.listener->begin(outcome.totals);
+      options.listener->end(outcome.totals);
+    }
     return outcome;
   }
   Store store(options.out / "store");

@@ -39,6 +39,7 @@ std::string place_of_file(const PlannedNode& node, std::string_view file) {
   if (shelf.empty() || !of_result) return fmt::format("{}/{}", node.folder, file);
   std::string name = node.folder.substr(std::string_view("nodes/").size());
   std::replace(name.begin(), name.end(), '/', '.');
+  name = short_name(std::move(name));
   return fmt::format("{}/{}{}", shelf, name, file.substr(std::min(file.find('.'), file.size())));
 }
 

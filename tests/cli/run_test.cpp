@@ -185,6 +185,15 @@ TEST_F(Runs, LimitNoNodeBySharingItsResult) {
   EXPECT_EQ(run("shared.xml").status, 0);
 }
 
+TEST_F(Runs, TellTheirBeginningAndEndAlsoWhenThereIsNothingToDo) {
+  ASSERT_EQ(run("small.xml").status, 0);
+  const std::vector<std::string> events = lines(run("small.xml --progress json").err);
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_TRUE(contains(events[0], "\"event\":\"begin\"")) << events[0];
+  EXPECT_TRUE(contains(events[0], "\"to_run\":0")) << events[0];
+  EXPECT_TRUE(contains(events[1], "\"event\":\"end\"")) << events[1];
+}
+
 TEST_F(Runs, StopWhenToldToAndGoOnLater) {
   ASSERT_EQ(run("long.xml -j 1 --out whole").status, 0);
   const Ended ended = script(

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cstdlib>
 
 #include "tests/engine/config/config_testing.h"
@@ -268,8 +270,13 @@ TEST(Overrides, CannotSweepUnderATakenName) {
       {"s:=1,2"});
   EXPECT_EQ(outcome.errors.size(), 1u) << outcome.text();
   EXPECT_EQ(nodes_text(outcome.config), "") << "no nodes at points that are not there, to be wrong in turn";
-  EXPECT_EQ(bad(R"(<arg name="s" default="1"/>)", {"s:=1,1"}).message,
-            "the argument 's' is given a value twice");
+  for (const auto& [given, value] :
+       {std::pair("s:=1,1", "1"), {"s:=2,2.0", "2.0"}, {"s:=5,1,05", "05"}, {"s:=100 cm,1 m", "1 m"}}) {
+    const Diagnostic twice = bad(R"(<arg name="s" default="1"/>)", {given});
+    EXPECT_EQ(twice.message, fmt::format("the argument 's' is given the value {} twice", value));
+    const auto column = std::string("runner ").size() + std::string(given).rfind(value) + 1;
+    EXPECT_EQ(twice.place.column, static_cast<int>(column)) << given;
+  }
   for (const char* given : {"s:=1,", "s:=1,,2", "s:=,1"})
     EXPECT_EQ(bad(R"(<arg name="s" default="1"/>)", {given}).message, "'s' has an empty item") << given;
   EXPECT_EQ(
