@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "registry/suggest.h"
 #include "registry/text.h"
@@ -49,15 +51,29 @@ class ElementReader {
     std::erase_if(made.resolved.attributes,
                   [](const Attribute& a) { return a.name == "over" || a.name == "at"; });
     declared.resolved = std::make_shared<const Element>(std::move(made.resolved));
-    if (declared.sound && declared.node->definition() && declared.node->replicates) {
-      diagnostics_.error(place_of(element.find("replicates"), element),
-                         fmt::format("<{}> has no replicates: it computes nothing", element.name));
-      declared.sound = false;
-    }
+    if (declared.sound && declared.node->definition())
+      declared.sound = computes_nothing(*declared.node, element);
     node->elements.push_back(std::move(declared));
   }
 
  private:
+  /// False, and reported, when a definition is given what only work can have.
+  bool computes_nothing(const Node& node, const Element& element) {
+    const std::array<std::pair<const char*, bool>, 5> given = {{{"replicates", node.replicates.has_value()},
+                                                                {"seed_label", !node.seed_label.empty()},
+                                                                {"time_limit", node.time_limit > 0},
+                                                                {"memory_limit", node.memory_limit > 0},
+                                                                {"threads", node.threads > 0}}};
+    bool good = true;
+    for (const auto& [name, is_given] : given) {
+      if (!is_given) continue;
+      diagnostics_.error(place_of(element.find(name), element),
+                         fmt::format("<{}> has no {}: it computes nothing", element.name, name));
+      good = false;
+    }
+    return good;
+  }
+
   /// False, and reported, for what cannot be an id.
   bool is_good(const Attribute& id, const std::string& name, const Element& element) {
     if (id.failed) return false;  // reported
