@@ -185,6 +185,29 @@ TEST_F(Runs, LimitNoNodeBySharingItsResult) {
   EXPECT_EQ(run("shared.xml").status, 0);
 }
 
+TEST_F(Runs, NameFilesAfterTheLongestIdsAndValues) {
+  const std::string id(100, 'i');
+  const std::string value(200, 'v');
+  folder_.write("names.xml", R"(<experiment coppice="1" seed="3">
+  <problem id="car"><double_integrator/></problem>
+  <policy id="p)" + id.substr(1) +
+                                 R"("><random/></policy>
+  <sweep id="s"><grid><param name="label" values=")" +
+                                 value + ", w" + value + R"("/></grid></sweep>
+  <evaluate id="e)" + id.substr(1) +
+                                 R"(" over="s" problem="car" policies="p)" + id.substr(1) +
+                                 R"(" episodes="3" seed_label="${label}"/>
+  <table id="t)" + id.substr(1) + R"(" over="s" of="e)" +
+                                 id.substr(1) + R"(" rows="policy" metric="cost"/>
+</experiment>
+)");
+  const Ended ended = run("names.xml");
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(lines(ended.out).size(), 3U) << ended.out;  // two tables, and the report
+  for (const std::string& file : lines(ended.out)) EXPECT_TRUE(fs::exists(folder_ / file)) << file;
+  EXPECT_TRUE(contains(run("names.xml").err, "up to date"));
+}
+
 TEST_F(Runs, TellTheirBeginningAndEndAlsoWhenThereIsNothingToDo) {
   ASSERT_EQ(run("small.xml").status, 0);
   const std::vector<std::string> events = lines(run("small.xml --progress json").err);
