@@ -35,7 +35,9 @@ class Merger {
       const std::string key = config::point_key({config::Value::inferred(value)});
       const auto [known, is_new] = values_[i].first_with.try_emplace(key, argument.chosen);
       if (is_new) values_[i].texts.push_back(value);
-      if (known->second < argument.chosen) values_[i].repeated.try_emplace(argument.chosen, value);
+      const bool unknown = value.empty() && !pass.complete;  // it could not be worked out
+      if (known->second < argument.chosen && !unknown)
+        values_[i].repeated.try_emplace(argument.chosen, value);
     }
     // A value that was given twice is reported in the end.
     if (combinations_.insert(combination).second) {

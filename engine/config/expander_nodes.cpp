@@ -78,7 +78,7 @@ void Expander::node_at_each_point(const Element& element, const std::vector<Defi
   }
 }
 
-/// False, and reported, when an experiment cannot have so many nodes, before they are made.
+/// False, and reported before any is made, when an experiment could have too many nodes.
 bool Expander::may_have_so_many(const Element& element, const std::vector<DefinedSweep*>& sweeps,
                                 const Context& context) {
   const std::size_t most = kMostPoints - std::min(kMostPoints, result_.nodes.size());
@@ -90,7 +90,8 @@ bool Expander::may_have_so_many(const Element& element, const std::vector<Define
     product += fmt::format("{}{}", product.empty() ? "" : " x ", points);
     if (count <= most) continue;
     error(element.find("over")->value_place, context,
-          fmt::format("the experiment has more than {} nodes: {} here", kMostPoints, product));
+          fmt::format("the experiment could have more than {} nodes: {} here", kMostPoints, product),
+          "<exclude> leaves points of a sweep out before they are combined");
     result_.complete = false;
     return false;
   }

@@ -277,6 +277,9 @@ TEST(Overrides, CannotSweepUnderATakenName) {
     const auto column = std::string("runner ").size() + std::string(given).rfind(value) + 1;
     EXPECT_EQ(twice.place.column, static_cast<int>(column)) << given;
   }
+  const Outcome unread = expand_body(R"(<arg name="n" type="integer" default="1"/>)", {"n:=a,b"});
+  EXPECT_EQ(unread.errors.size(), 2u) << "two values that are no numbers, and not one twice\n"
+                                      << unread.text();
   for (const char* given : {"s:=1,", "s:=1,,2", "s:=,1"})
     EXPECT_EQ(bad(R"(<arg name="s" default="1"/>)", {given}).message, "'s' has an empty item") << given;
   EXPECT_EQ(
